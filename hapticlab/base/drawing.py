@@ -39,7 +39,7 @@ STYLES: list[dict[str, Any]] = [
 ]
 HOUSE: dict[str, Any] = {
     "font.size": 11, "axes.grid": True, "grid.alpha": 0.35, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.axisbelow": True, "lines.linewidth": 1.6, "legend.frameon": False, "savefig.dpi": 150,
+    "axes.axisbelow": True, "lines.linewidth": 1.6, "legend.frameon": False, "savefig.dpi": 150, "hatch.linewidth": 0.7,
 }  # fmt: skip
 #: SI unit -> (what to multiply by, the unit an axis shows)
 SHOWN = {"m": (1e3, "mm"), "J": (1e3, "mJ"), "s": (1e3, "ms")}
@@ -50,6 +50,8 @@ NAMES = {
     "energy": "energy drawn from the environment", "peak_force": "peak force",
 }  # fmt: skip
 FRAME: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
+#: what a limit forbids, or what is lacking; readable in grey print and above a map
+HATCHED: dict[str, Any] = {"facecolor": "none", "edgecolor": WARM, "hatch": "///", "linewidth": 0}
 
 
 def style_of(number):
@@ -98,6 +100,15 @@ def new_figure(*, height, width=7.2):
     figure = HouseFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def forbid(axes, level, words, *, below=False):
+    """Hatch the side of a level that is not allowed, with words for the legend; room for it is made."""
+    low, high = axes.get_ylim()
+    room = 0.15 * (high - low)
+    low, high = (min(low, level - room), high) if below else (low, max(high, level + room))
+    axes.axhspan(low if below else level, level if below else high, label=words, zorder=0.5, **HATCHED)
+    axes.set_ylim(low, high)
 
 
 def legend_above(axes, lines):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..analysis.sweeps.sweep import Sweep, sweep
-from ..base.drawing import STYLES, house_style, new_figure
+from ..base.drawing import HATCHED, STYLES, house_style, new_figure
 from ..compiler.engines.engine import load
 from ..device.hand.hand import Hand
 from ..device.profiles import profile
@@ -21,6 +21,8 @@ from .scene_file import SceneFile, describe, load_scene, report_of, run_scene
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "mass_on_coupler.py"
 PUSH = 2.0
+#: about what a one-axis paddle can move to one side [m]
+TRAVEL = 0.05
 #: illustrative hands, measured on nobody: one that only pushes, one that also holds (mass, damping, stiffness of a pinch)
 HANDS = {
     "push alone": Hand(push=PUSH),
@@ -198,6 +200,11 @@ def _draw_onset(axes, found):
         axes.plot(grid.axes["k"], amplitude, marker=".", color=style["color"], label=f"simulated chatter, {f.hand}")
     axes.set(xscale="log", yscale="log", xlim=(grid.axes["k"][0], grid.axes["k"][-1]))
     axes.set(xlabel="wall stiffness k [N/m]", ylabel=f"amplitude [mm] after {grid.duration:g} s")
+    largest = max(np.nanmax(f.grid.values) for f in found.felt)
+    if largest > TRAVEL:
+        said = f"above {1e3 * TRAVEL:g} mm a real handle would hit its stops; the simulation has none"
+        axes.axhspan(1e3 * TRAVEL, 2e3 * largest, label=said, **HATCHED)
+        axes.set_ylim(top=2e3 * largest)
     axes.set_title("Where the wall of Eq. (23.1) begins to chatter (no point: no chatter)")
     axes.legend(loc="lower left", bbox_to_anchor=(0.22, 0.02), fontsize="small")
 

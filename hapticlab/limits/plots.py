@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.drawing import COLD, FRAME, STYLES, WARM, house_style, new_figure, style_of
+from ..base.drawing import COLD, FRAME, HATCHED, STYLES, WARM, forbid, house_style, new_figure, style_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def plot_limit(limit: Limit) -> Figure:
-    """Draw the stiffnesses that a limit promises, filled, and those of which it promises nothing, hatched.
+    """Draw the stiffnesses that a limit guarantees, filled, and those of which it guarantees nothing, hatched.
 
     Parameters
     ----------
@@ -39,10 +39,10 @@ def plot_limit(limit: Limit) -> Figure:
     with house_style():
         figure = new_figure(height=1.5 + 0.2 * (len(told) + len(notes)))
         axes = figure.subplots()
-        axes.barh(0, min(K, most), color=COLD, label=f"promised: up to {K:.4g} N/m" if K > 0 else "promised: nothing")
+        axes.barh(0, min(K, most), color=COLD, label=f"guaranteed: up to {K:.4g} N/m" if K > 0 else "guaranteed: nothing")
         if np.isfinite(K):
             beyond = {"color": "white", "hatch": "///", "edgecolor": WARM}
-            axes.barh(0, most - K, left=K, **beyond, label="beyond: no such promise")
+            axes.barh(0, most - K, left=K, **beyond, label="stiffer: not guaranteed")
         axes.set(xlim=(0, most), yticks=[], xlabel="stiffness K [N/m]")
         axes.set_title("\n".join(told), fontsize="small")
         axes.grid(False)
@@ -70,17 +70,16 @@ def plot_passivity_margin(margin: PassivityMargin) -> Figure:
         figure = new_figure(height=4.0)
         axes = figure.subplots()
         asked = margin.asked(theta)
-        axes.plot(frequency, asked, label="any motion through the samples (Colgate and Schenkel)", **STYLES[0])
+        axes.plot(frequency, asked, label="any motion (Colgate and Schenkel)", **STYLES[0])
         axes.plot(frequency, -margin.equivalent_damper(theta), label="a sinusoid: $-b_{eq}$", **STYLES[1])
         axes.axhline(margin.b, label="the device's b", **STYLES[5])
-        axes.fill_between(frequency, asked, margin.b, where=asked > margin.b, color=WARM, alpha=0.2, linewidth=0)
         if np.isfinite(margin.required):
             axes.plot(margin.frequency, margin.required, "ko", markersize=5)
         axes.set(xlim=(0, frequency[-1]), xlabel="frequency [Hz]", ylabel="damping asked for [N s/m]")
-        axes.margins(y=0.15)
+        forbid(axes, margin.b, "not passive: more than the device has")
         late = f", delay {1e3 * margin.delay:g} ms" if margin.delay else ""
         axes.set_title(f"{margin.law.name}, T = {1e3 * margin.law.T:g} ms{late}", fontsize="small")
-        axes.legend(fontsize="small", **FRAME)
+        figure.legend(fontsize="small", loc="outside lower center", ncols=2)
     return figure
 
 
@@ -98,7 +97,7 @@ def plot_nyquist_disk(disk: NyquistDisk) -> Figure:
     theta = np.linspace(0.02, np.pi, 1500)
     turn = np.exp(1j * np.linspace(0, 2 * np.pi, 200))
     with house_style(), np.errstate(divide="ignore", invalid="ignore"):  # a law that gives no force here has no -1/H
-        figure = new_figure(height=5.8, width=9.6)
+        figure = new_figure(height=5.4, width=8.6)
         left, right = figure.subplots(1, 2)
         unit = disk.law.T / disk.b
         for number, at in enumerate(np.pi * np.array([0.2, 0.3, 0.5, 1.0])):
@@ -110,8 +109,9 @@ def plot_nyquist_disk(disk: NyquistDisk) -> Figure:
         locus = -1 / disk.law.at(theta) / unit
         shown = np.abs(locus) < 1e3
         left.plot(locus.real[shown], locus.imag[shown], color="#8a8a8a", linewidth=1.0, label="-1/H")
-        left.set(xlabel="Re G [T/b]", ylabel="Im G [T/b]", xlim=(-1.7, 1.1), ylim=(-1.8, 1.0), aspect="equal")
-        left.set_title("passive hands: a disk and a dot on -1/H\nfor each frequency", fontsize="medium")
+        left.set(xlabel="Re G [T/b]", ylabel="Im G [T/b]", xlim=(-1.7, 1.1), ylim=(-1.8, 1.0))
+        circles = "a circle of all passive hands for each frequency;\nnot passive: a dot of -1/H inside its own circle"
+        left.set_title(circles, fontsize="small")
         mapped = disk.mapped(theta)
         right.plot(turn.real, turn.imag, label="unit circle", **STYLES[0])
         right.plot(mapped.real, mapped.imag, label="the law, mapped", **STYLES[1])
@@ -122,10 +122,14 @@ def plot_nyquist_disk(disk: NyquistDisk) -> Figure:
             right.plot(worst.real, worst.imag, "ko", markersize=5, label=f"worst: |M| {disk.size}")
         else:  # in words only
             right.plot([], [], linestyle="", label=f"worst: |M| {disk.size}, off the picture")
-        right.set(xlabel="Re M", ylabel="Im M", xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
-        right.set_title(f"{disk.law.name},\nb = {disk.b:g} N s/m", fontsize="medium")
+        right.set(xlabel="Re M", ylabel="Im M", xlim=(-reach, reach), ylim=(-reach, reach))
+        corner = 3 * reach  # hatched: the square beyond the unit circle
+        square = np.array([[-corner, -corner], [corner, -corner], [corner, corner], [-corner, corner], [-corner, -corner]])
+        right.fill(*np.vstack([square, np.column_stack([turn.real, -turn.imag])]).T, label="outside: not passive", **HATCHED)
+        right.set_title(f"all circles mapped onto one\n{disk.law.name}, b = {disk.b:g} N s/m", fontsize="small")
         for axes in (left, right):
-            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
+            axes.set_box_aspect(1)  # both sides have one length, so that circles are round
+        figure.legend(loc="outside lower center", ncols=4, fontsize="small")
     return figure
 
 
@@ -149,12 +153,14 @@ def plot_coupler(design: CouplerDesign) -> Figure:
         left.fill_between(dampers, springs, color=COLD, alpha=0.15, linewidth=0)
         left.plot(design.b_c, design.k_c, "ko", label="this design")
         left.set(xlabel="coupler damping $b_c$ [N s/m]", ylabel="coupler stiffness $k_c$ [N/m]", ylim=(0, 1.15 * springs.max()))
+        left.fill_between(dampers, springs, 1.15 * springs.max(), label="not absolutely stable", **HATCHED)
         left.set_title("absolutely stable below the line", fontsize="small")
         left.legend(fontsize="small", **FRAME)
         left.locator_params(axis="x", nbins=5)
         right.plot(theta / (2 * np.pi * design.T), design.two_port.criterion(theta), **STYLES[0])
-        right.axhline(0.0, **STYLES[5])
-        right.set(xlabel="frequency [Hz]", ylabel="Llewellyn's criterion, to be >= 0", xlim=(0, 0.5 / design.T))
+        right.set(xlabel="frequency [Hz]", ylabel="Llewellyn's criterion", xlim=(0, 0.5 / design.T))
+        forbid(right, 0.0, "below 0: not absolutely stable", below=True)
+        right.legend(fontsize="small", **FRAME)
         right.set_title(f"b = {design.b:g} N s/m, T = {1e3 * design.T:g} ms, delay {1e3 * design.delay:g} ms", fontsize="small")
     return figure
 
@@ -176,8 +182,9 @@ def plot_admittance(design: AdmittanceDesign) -> Figure:
         figure = new_figure(height=4.0, width=9.6)
         left, right = figure.subplots(1, 2)
         left.plot(frequency, design.two_port.criterion(theta), **STYLES[0])
-        left.axhline(0.0, **STYLES[5])
-        left.set(ylabel="Llewellyn's criterion, to be >= 0")
+        forbid(left, 0.0, "below 0: not absolutely stable", below=True)
+        left.set(ylabel="Llewellyn's criterion")
+        left.legend(fontsize="small", **FRAME)
         right.plot(frequency, design.two_port.h(theta)[:, 0, 0].real, label="environment at rest", **STYLES[0])
         right.plot(frequency, design.two_port.least_resistance(theta), label="worst environment", **STYLES[1])
         right.set(ylabel="Re of what the hand feels [m/s/N]")
@@ -212,7 +219,8 @@ def plot_bounds(bounds: Bounds) -> Figure:
             axes.barh(row, min(limit.K, most), height=0.6, **bar)
             axes.text(min(limit.K, most) + 0.01 * most, row, f"{limit.K:.4g}", va="center", fontsize="small")
         axes.set(yticks=range(len(bounds.found)), yticklabels=list(bounds.found), xlim=(0, 1.1 * most))
-        axes.set_xlabel("largest stiffness K [N/m]\n(filled: passivity in any hand, hatched: no such claim)")
+        signs = "filled: passive in any hand, hatched: stable in this hand"
+        axes.set_xlabel(f"largest stiffness K [N/m]; no guarantee to the right of a bar\n{signs}")
         axes.set_title(f"law {bounds.law}, B = {bounds.B:g} N s/m", fontsize="small")
         axes.invert_yaxis()
     return figure
@@ -272,9 +280,8 @@ def plot_law(law: LinearLaw) -> Figure:
         above.set_title(f"{law.name}: as a sinusoid feels it, sampled and held", fontsize="small", wrap=True)
         damping = felt.imag / omega
         below.plot(frequency, damping, **STYLES[0])
-        lacks = {"facecolor": "none", "edgecolor": WARM, "hatch": "///", "linewidth": 0}
         if (damping < 0).any():
-            below.fill_between(frequency, damping, 0, where=damping < 0, **lacks, label="negative: it feeds energy to the hand")
+            below.fill_between(frequency, damping, 0, where=damping < 0, **HATCHED, label="negative: it feeds energy to the hand")
             below.legend(fontsize="small", **FRAME)
         below.axhline(0.0, color="#4d4d4d", linewidth=0.8)
         below.set(xlabel="frequency [Hz]", ylabel="felt damping [N s/m]", xlim=(0, 0.5 / law.T))
@@ -299,10 +306,8 @@ def plot_two_port(port: TwoPort) -> Figure:
         axes = figure.subplots()
         criterion = port.criterion(theta)
         axes.plot(theta / (2 * np.pi * port.T), criterion, label="criterion", **STYLES[0])
-        axes.axhline(0.0, **STYLES[5])
-        if (criterion < 0).any():
-            lacks = {"facecolor": "none", "edgecolor": WARM, "hatch": "///", "linewidth": 0}
-            axes.fill_between(theta / (2 * np.pi * port.T), criterion, 0, where=criterion < 0, label="too little", **lacks)
-        axes.set(xlabel="frequency [Hz]", ylabel="Llewellyn's criterion, to be >= 0", xlim=(0, 0.5 / port.T))
+        forbid(axes, 0.0, "below 0: not absolutely stable", below=True)
+        axes.legend(fontsize="small", **FRAME)
+        axes.set(xlabel="frequency [Hz]", ylabel="Llewellyn's criterion", xlim=(0, 0.5 / port.T))
         axes.set_title(f"{port.name}: {verdict}", fontsize="small", wrap=True)
     return figure

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.drawing import STYLES, house_style, new_figure
+from ..base.drawing import HATCHED, STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from .limit import Limit
 from .loop import Loop
@@ -193,27 +193,56 @@ def _zeros(loop):
 def plot_root_locus(locus: RootLocus) -> Figure:
     """Draw a root locus; see :meth:`RootLocus.plot`."""
     with house_style():
-        figure = new_figure(height=6.8)
+        figure = new_figure(height=5.0)
         axes = figure.subplots()
         _draw_grid(axes, locus.T)
-        for number in range(locus.poles.shape[1]):
-            label = f"poles, K = {locus.K[0]:.3g} to {locus.K[-1]:.3g} N/m" if number == 0 else None
-            z = locus.poles[:, number]
-            axes.plot(z.real, z.imag, color=STYLES[0]["color"], linewidth=1.8, label=label)
-        start = {"color": STYLES[2]["color"], "linestyle": "none", "markersize": 9, "markeredgewidth": 2}
-        axes.plot(locus.poles[0].real, locus.poles[0].imag, marker="x", label=f"K = {locus.K[0]:.3g} N/m", **start)
-        zeros = {**start, "marker": "o", "markerfacecolor": "none"}
-        axes.plot(locus.zeros.real, locus.zeros.imag, label="K without bound", **zeros)
-        if locus.limit.frequency is not None:
-            z = np.exp(2j * np.pi * locus.limit.frequency * locus.T)
-            text = f"leaves at K = {locus.limit.K:.6g} N/m, {locus.limit.frequency:.4g} Hz"
-            mark = {"marker": "D", "linestyle": "none", "color": STYLES[1]["color"], "markersize": 8}
-            axes.plot([z.real, z.real], [z.imag, -z.imag], label=text, **mark)
-        axes.set(xlim=(-1.4, 1.4), ylim=(-1.2, 1.2), aspect="equal", xlabel="Re z", ylabel="Im z")
+        _draw_poles(axes, locus)
+        axes.set(xlim=(-1.4, 2.9), ylim=(-1.2, 1.2), aspect="equal", xlabel="Re z", ylabel="Im z", xticks=(-1, 0, 1))
+        _draw_inset(axes, locus)
         grid = "dotted: equal damping ratio, equal natural frequency"
         axes.set_title(f"law {locus.name}, T = {1e3 * locus.T:g} ms; {grid}", fontsize="small")
         figure.legend(fontsize="small", loc="outside lower center", ncols=2)
     return figure
+
+
+def _draw_poles(axes, locus):
+    """Draw the way of each pole, where it begins, where it goes, and where the first one leaves the circle."""
+    for number in range(locus.poles.shape[1]):
+        label = f"poles, K = {locus.K[0]:.3g} to {locus.K[-1]:.3g} N/m" if number == 0 else None
+        z = locus.poles[:, number]
+        axes.plot(z.real, z.imag, color=STYLES[0]["color"], linewidth=1.8, label=label)
+    start = {"color": STYLES[2]["color"], "linestyle": "none", "markersize": 9, "markeredgewidth": 2}
+    axes.plot(locus.poles[0].real, locus.poles[0].imag, marker="x", label=f"K = {locus.K[0]:.3g} N/m", **start)
+    zeros = {**start, "marker": "o", "markerfacecolor": "none"}
+    axes.plot(locus.zeros.real, locus.zeros.imag, label="K without bound", **zeros)
+    if locus.limit.frequency is not None:
+        z = _leaving(locus)
+        text = f"leaves at K = {locus.limit.K:.6g} N/m, {locus.limit.frequency:.4g} Hz"
+        mark = {"marker": "D", "linestyle": "none", "color": STYLES[1]["color"], "markersize": 8}
+        axes.plot([z.real, z.real], [z.imag, -z.imag], label=text, **mark)
+
+
+def _leaving(locus):
+    return np.exp(2j * np.pi * locus.limit.frequency * locus.T)
+
+
+def _draw_inset(axes, locus):
+    """Draw what happens at the circle larger beside it: from where the leaving pole begins to where it leaves."""
+    begin = locus.poles[0][np.argmax(np.abs(locus.poles[0]))]
+    end = begin if locus.limit.frequency is None else _leaving(locus)
+    begin = complex(begin.real, abs(begin.imag))
+    middle, half = (begin + end) / 2, max(0.75 * abs(end - begin), 0.02)
+    inset = axes.inset_axes([0.655, 0.17, 0.335, 0.72], xlim=(middle.real - half / 1.2, middle.real + half / 1.2))
+    inset.set(ylim=(middle.imag - half, middle.imag + half), aspect="equal", xlabel="Re z", title="where it leaves")
+    turn = np.exp(1j * np.linspace(-np.pi, np.pi, 4000))
+    inset.fill(np.r_[turn.real, 3 * turn.real[::-1]], np.r_[turn.imag, 3 * turn.imag[::-1]], label="outside: unstable", **HATCHED)
+    inset.plot(turn.real, turn.imag, color="#4d4d4d", linewidth=1.0)
+    _draw_poles(inset, locus)
+    inset.title.set_fontsize("small")
+    inset.tick_params(labelsize="small")
+    inset.locator_params(nbins=3)
+    axes.indicate_inset_zoom(inset, edgecolor="#4d4d4d")
+    axes.fill_between([], [], label="outside the circle: unstable", **HATCHED)
 
 
 def _draw_grid(axes, T):

@@ -1,5 +1,7 @@
 """The figure of a trade-off: error against load, both logarithmic, a line for each method."""
 
+from collections import Counter
+
 from ...base.drawing import FRAME, house_style, log_scales, new_figure, style_of
 from .tradeoff_rows import TOO_LARGE
 
@@ -8,6 +10,14 @@ MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}
 BARRED = {"before": None, "after": "|", "mean": "_"}
 #: an error of nothing at all is drawn here
 LEAST = 1e-12
+#: why a setting is not allowed
+WORDS = {
+    "margin": "near its longest stable step", "contact": "too few steps in a contact", "passive": "not passive on this device",
+    "encoder": "the encoder is too coarse", "doubt": "the reference is too rough", "held": "the hold errs too much",
+    "size": "too large for the board",
+}  # fmt: skip
+#: of a scene without a name
+UNNAMED = "scene"
 #: panels beside each other
 ACROSS = 2
 
@@ -16,8 +26,8 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
     """Draw the error of the force against the load of the target, a panel for each.
 
     A marker is a setting, its shape the hold, filled where stability, contacts, passivity and the board allow it, with a
-    black edge where its numbers are float64. A line
-    goes along the settings of one method that none of its others beats. Dashed: the error that the encoder alone makes.
+    black edge where its numbers are float64; the legend says what most of the hollow ones lack. A line goes along the
+    settings of one method that none of its others beats. Dashed: the error that the encoder alone makes.
 
     Parameters
     ----------
@@ -38,26 +48,28 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
         figure = new_figure(height=1.0 + 3.4 * down + 0.25 * ((len(methods) + 6) // (2 * across) + 1), width=5.0 * across + 0.6)
         panels = figure.subplots(down, across, sharey=True, squeeze=False).ravel()
         for axes, target in zip(panels, targets, strict=False):
-            _panel(axes, target, shown[target], methods, asked)
+            _panel(axes, shown[target], methods, asked)
+            _asked(axes, _places(shown[target])[0], _places([row for rows in shown.values() for row in rows])[1], asked)
         for axes in panels[len(targets) :]:
             axes.set_visible(False)
         for axes in panels[::across]:
             axes.set_ylabel("greatest error of the force [% of its peak]")
-        if len(targets) == 1:
-            panels[0].set_title(f"{tradeoff.name}, on {targets[0]}")
-        else:
-            figure.suptitle(tradeoff.name)
-        _legend(figure, panels[0], methods, [row for rows in shown.values() for row in rows])
+        named = "" if tradeoff.name == UNNAMED else f"{tradeoff.name}: "
+        figure.suptitle(f"{named}error against load{f', on {targets[0]}' if len(targets) == 1 else ''}", fontsize="medium")
+        if len(targets) > 1:
+            for axes, target in zip(panels, targets, strict=False):
+                axes.set_title(f"on {target}", fontsize="medium")
+        _legend(figure, panels[0], methods, [row for rows in shown.values() for row in rows], asked)
     return figure
 
 
-def _panel(axes, target, rows, methods, asked):
+def _panel(axes, rows, methods, asked):
     for number, method in enumerate(methods):
         own, style = [row for row in rows if row.method == method], style_of(number)
         best = front(own)
         axes.plot(*_places(best), **style, linewidth=1.2, zorder=2)
         for row in own:
-            allowed = not asked.excess(row).keys() - {"tolerance", "load"} and row.status != TOO_LARGE
+            allowed = not _excess(row, asked)
             axes.plot(
                 *_places([row]), MARKERS[row.hold], color=style["color"], markersize=6, zorder=3,
                 markerfacecolor=style["color"] if allowed else "white", markeredgewidth=0.8,
@@ -66,9 +78,23 @@ def _panel(axes, target, rows, methods, asked):
             if BARRED[row.force_at]:
                 axes.plot(*_places([row]), BARRED[row.force_at], color="black", markersize=8, zorder=4)
     _sensor(axes, {row.T: row.sensor_floor for row in rows if row.sensor_floor > 0})
-    axes.axhline(100 * asked.tolerance, color="black", linestyle=":", linewidth=1.0, zorder=1)
-    axes.axvline(100 * asked.load, color="black", linestyle=":", linewidth=1.0, zorder=1)
-    axes.set(title=target, xlabel="load [% of the period]")
+    axes.set(xlabel="load [% of the period]")
+
+
+def _asked(axes, loads, errors, asked):
+    """Draw what is asked for, or name it at the edge where no marker is within a decade: an empty one tells nothing."""
+    for side, many, wanted, line in (("x", loads, asked.load, axes.axvline), ("y", errors, asked.tolerance, axes.axhline)):
+        low, high = (min(many) / 2, max(many) * 2) if many else (100 * wanted / 3, 300 * wanted)
+        if low / 10 < 100 * wanted < 10 * high:
+            line(100 * wanted, color="black", linestyle=":", linewidth=1.0, zorder=1)
+            low, high = min(low, 50 * wanted), max(high, 200 * wanted)
+        else:
+            far = "right" if side == "x" else "above"
+            place = {"x": ((0.99, 0.02), "right", "bottom"), "y": ((0.01, 0.99), "left", "top")}[side]
+            text = f"asked for: {100 * wanted:g} %, far {far if 100 * wanted > high else 'left' if side == 'x' else 'below'}"
+            style = {"ha": place[1], "va": place[2], "fontsize": "x-small", "color": "#4d4d4d"}
+            axes.annotate(text, place[0], xycoords="axes fraction", **style)
+        axes.set(**{f"{side}lim": (low, high)})
     log_scales(axes)
 
 
@@ -100,7 +126,20 @@ def _places(rows):
     return [100 * row.load for row in rows], [100 * max(row.err_max, LEAST) for row in rows]
 
 
-def _legend(figure, axes, methods, rows):
+def _forbidden(rows, asked):
+    """Yield what most of the hollow markers lack."""
+    lacking = Counter(WORDS[next(iter(found))] for row in rows if (found := _excess(row, asked)))
+    for word, _ in lacking.most_common(1):
+        yield f"hollow: {word}{' and others' if len(lacking) > 1 else ''}"
+
+
+def _excess(row, asked):
+    """Return what a row misses beside tolerance and load."""
+    missed = [name for name in asked.excess(row) if name not in ("tolerance", "load")]
+    return missed or (["size"] if row.status == TOO_LARGE else [])
+
+
+def _legend(figure, axes, methods, rows, asked):
     """Tell lines and markers apart below the panels."""
 
     def sign(label, **style):
@@ -109,8 +148,8 @@ def _legend(figure, axes, methods, rows):
     signs = [sign(method, **style_of(number)) for number, method in enumerate(methods)]
     grey = {"color": "#8a8a8a", "linestyle": "", "markersize": 6}
     signs += [sign(f"hold {hold}", marker=mark, **grey) for hold, mark in MARKERS.items() if hold in {row.hold for row in rows}]
-    signs += [sign("hollow: not allowed", marker="o", markerfacecolor="white", **grey)]
+    signs += [sign(words, marker="o", markerfacecolor="white", **grey) for words in _forbidden(rows, asked)]
     if any(row.precision == "float64" for row in rows):
         signs += [sign("black edge: float64", marker="o", markeredgecolor="black", **grey)]
-    signs += [sign("asked for", color="black", linestyle=":")]
+    signs += [sign("asked for: left of and below it", color="black", linestyle=":")]
     figure.legend(handles=signs, loc="outside lower center", ncols=2 if len(figure.axes) == 1 else 4, **FRAME)

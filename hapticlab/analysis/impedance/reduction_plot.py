@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...base.drawing import STYLES, house_style, new_figure
+from ...base.drawing import STYLES, forbid, house_style, new_figure
 
 
 def plot_reduction(offer):
@@ -28,7 +28,8 @@ def plot_reduction(offer):
         upper.set_ylabel("|Z| [N s/m]")
         upper.legend()
         lower.loglog(offer.frequency, np.maximum(offer.error, 1e-16), **STYLES[0])
-        lower.axhline(offer.tolerance, label="tolerance", **STYLES[1])
+        forbid(lower, offer.tolerance, "above the tolerance")
+        lower.set_ylim(bottom=max(1e-6 * offer.tolerance, 0.5 * max(np.min(offer.error), 1e-16)))  # below it is rounding
         lower.set_ylabel("relative error")
         lower.set_xlabel("frequency [Hz]")
         lower.legend()

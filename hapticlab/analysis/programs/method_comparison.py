@@ -125,8 +125,8 @@ class Methods(Mapping[str, "Method | WithoutSteps"]):
                 style = style_of(number)
                 _draw_region(left, method, style)
                 right.loglog(ZETA, [method.longest_step(zeta) or np.nan for zeta in ZETA], **style, label=name)
-            left.set(xlabel="Re(h λ)", ylabel="Im(h λ)", aspect="equal", title="|R| = 1 of y' = λ y, stable inside")
-            right.set(xlabel="damping ratio ζ", ylabel="largest stable ω h", title="q'' = -ω² q - 2 ζ ω q'")
+            left.set(xlabel="Re(h λ)", ylabel="Im(h λ)", aspect="equal", title="y' = λ y: stable inside the line")
+            right.set(xlabel="damping ratio ζ", ylabel="largest stable ω h", title="q'' = -ω² q - 2 ζ ω q': stable below")
             figure.legend(loc="outside right center", fontsize="small")
         return figure
 

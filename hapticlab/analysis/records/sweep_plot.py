@@ -114,7 +114,9 @@ def _draw_limits(axes, result, shown, limits):
             K, along = [float(one) for one in limit], _curve_axis(result, other, len(limit))
             axes.plot(*((K, along) if upright else (along, K)), label=text, **style)
         else:
-            (axes.axvline if upright else axes.axhline)(float(limit), label=f"{text}: {float(limit):.4g} N/m", **style)
+            side = "to the left" if upright else "below"
+            label = f"{text}: {float(limit):.4g} N/m, holds {side}"
+            (axes.axvline if upright else axes.axhline)(float(limit), label=label, **style)
     axes.legend(**FRAME)
 
 

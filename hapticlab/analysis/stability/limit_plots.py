@@ -5,7 +5,7 @@ import textwrap
 
 import numpy as np
 
-from ...base.drawing import STYLES, house_style, new_figure
+from ...base.drawing import FRAME, STYLES, forbid, house_style, new_figure
 from ...limits.port import asked
 
 
@@ -30,8 +30,9 @@ def plot_step_limit(limit):
                 axes.plot(1e3 * steps, _radius(mode.step(steps)), label=f"{mode.mode}; {mode.point}", **style)
         axes.axvline(1e3 * limit.h, color="#8a8a8a", label="the step taken")
         axes.set(xscale="log", ylim=(0.0, 2.0), xlabel="step h [ms]", ylabel="largest |eigenvalue| of a step")
+        forbid(axes, 1.0, "above 1: the step is unstable")
         axes.set_title(f"{limit.scene}, {limit.method}", fontsize="small")
-        axes.legend(fontsize="small")
+        axes.legend(fontsize="small", loc="lower right", **FRAME)
     return figure
 
 
@@ -62,11 +63,13 @@ def plot_port(port):
                 b = asked(*mode.tick, port.T, 2 * np.pi * frequency * port.T, port.delay)
                 axes.plot(frequency, b, label=f"{mode.mode}; {mode.point}", **style)
         if port.b_device is not None:
-            axes.axhline(port.b_device, color="#8a8a8a", label="the device")
+            axes.axhline(port.b_device, color="#8a8a8a", label="damping of the device")
         most = 1.2 * max([port.b_device or 0.0, *(mode.b_req for mode in port.modes if np.isfinite(mode.b_req))]) or 1.0
         axes.set(xscale="log", ylim=(-most, most), xlabel="frequency [Hz]", ylabel="damping asked for [N s/m]")
+        if port.b_device is not None:
+            forbid(axes, port.b_device, "not passive: more than the device has")
         axes.set_title(f"{port.scene}, T = {1e3 * port.T:g} ms", fontsize="small")
-        axes.legend(fontsize="small")
+        axes.legend(fontsize="small", loc="lower left", **FRAME)
     return figure
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ...base.arguments import count, number
-from ...base.drawing import COLD, WARM, house_style, new_figure
+from ...base.drawing import COLD, WARM, house_style, new_figure, plain_log
 from ...base.telemetry import Telemetry
 from ...device.simulated.closed_loop import link, load_linked
 from ...device.simulated.simulated_paddle import SimulatedPaddle
@@ -116,9 +116,10 @@ class LawComparison:
             left.set(xlabel="energy generated [% of what came in]", yticks=places, yticklabels=names)
             left.invert_yaxis()
             left.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize="small")
-            right.plot([100 * max(b.path, 1e-6) for b in self.bounces], places, "o", color=WARM)  # no foot: a log scale
-            right.set(xscale="log", xlabel="stray from the wall's path [% of depth]")
-            right.set_xlim(left=1e-4)
+            strays = np.array([100 * max(b.path, 1e-6) for b in self.bounces])  # no foot: a log scale
+            right.plot(strays, places, "o", color=WARM)
+            plain_log(right, "x")
+            right.set(xlabel="stray from the wall's path [% of depth]", xlim=(strays.min() / 2, 2 * strays.max()))
         return figure
 
 

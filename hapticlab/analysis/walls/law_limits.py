@@ -97,7 +97,7 @@ class LawLimits:
             stood = [m.K for m in self.limits if m.K > 0]
             axes.set_xlim((0.5 * min(stood), 1.1 * max(stood)) if stood else (10, 1e5))
             scale_axis(axes, "x", np.geomspace(10, 1e5, 5))
-            axes.set(xlabel="stiffest wall that stands [N/m]", yticks=places, yticklabels=names)
+            axes.set(xlabel="stiffest wall that does not chatter [N/m]", yticks=places, yticklabels=names)
             axes.invert_yaxis()
         return figure
 

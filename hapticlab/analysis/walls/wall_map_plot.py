@@ -1,5 +1,7 @@
 """The picture of a wall map: four regions in four greys of one colour, and the lines of the theory on them."""
 
+from textwrap import wrap
+
 import numpy as np
 
 from ...base.drawing import WARM, axis_label, house_style, new_figure, outline, scale_axis
@@ -61,7 +63,8 @@ class WallMapPicture:
             scale_axis(axes, "y", y)
             axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
             axes.grid(False)
-            axes.set_title(found.about.splitlines()[0], fontsize="small")
+            words = [found.about.splitlines()[0], f"colour: a simulated contact of {found.duration:g} s per cell; lines: theory"]
+            axes.set_title("\n".join([*words, *wrap(found.beyond_words, 84)]), fontsize="small")
             self.figure.legend(fontsize="small", loc="outside lower center", ncols=2)
 
     def show(self, found):

@@ -92,6 +92,17 @@ class WallMap:
         """Whether the passivity limit says nothing about the switching at the boundary: a law with a memory, or delay."""
         return any(SWITCHING_NOT_COVERED in one.assumptions for one in self.limits.get("passivity", ()) if one)
 
+    @property
+    def beyond_words(self) -> str:
+        """Why points beyond the line of exact stability come to rest, in a sentence; empty where none do."""
+        resting = int((beyond(self) & (self.regions <= 1)).sum())
+        if not resting:
+            return ""
+        return (
+            f"{resting} points beyond the line of exact linear stability come to rest from this start: the line ignores "
+            "Coulomb friction and the encoder, and it is about an endless time"
+        )
+
     def plot(self) -> Figure:
         """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.walls.wall_map_plot.plot_wall_map`."""
         return plot_wall_map(self)
@@ -112,6 +123,8 @@ class WallMap:
                 f"  {self.surprises.sum()} points within the passivity limit chatter: it is about device damping alone, not "
                 "about an encoder"
             )
+        if self.beyond_words:
+            lines.append(f"  {self.beyond_words}")
         if self.undecided.any():
             judge = "by the linear theory" if "stability" in self.limits else "against the wall"
             lines.append(f"  {self.undecided.sum()} points are decided {judge}: the handle does not come back in time")
