@@ -79,7 +79,7 @@ def test_a_limit_is_drawn_with_what_it_promises():
     assert (promised.get_width(), beyond.get_x()) == pytest.approx((200.0, 200.0))  # 2 b/T
     assert figure.alt.startswith(str(found)) and all(note in figure.get_supxlabel() for note in found.assumptions)
     none = hl.passivity_limit(hl.Device(b=0.1, T=1e-3), B=1.0).plot()
-    assert none.legends[0].get_texts()[0].get_text() == "promised: nothing"
+    assert none.legends[0].get_texts()[0].get_text() == "guaranteed: nothing"
 
 
 def test_energy_is_drawn_and_what_was_given_is_hatched():
@@ -174,3 +174,42 @@ def test_a_paddle_without_dry_friction_shows_the_one_part_it_has():
     found = hl.design.compensation(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
     (axes,) = found.plot().axes
     assert axes.lines[0].get_xdata()[0] == found.viscous and "runs away" in {text.get_text() for text in axes.texts}
+
+
+def hatched(axes):
+    """The place of what is hatched, by its label."""
+    return {patch.get_label(): patch.get_bbox() for patch in axes.patches if patch.get_hatch()}
+
+
+def test_the_forbidden_side_of_a_limit_is_hatched_and_named():
+    law = hl.laws.LinearLaw.of("backward_difference", K=100, T=1e-3)
+    ((words, place),) = hatched(hl.passivity.margin(hl.Device(b=0.06), law).plot().axes[0]).items()
+    assert "not passive" in words and place.y0 == 0.06 < 0.1 < place.y1  # the law asks for K T = 0.1
+    port = hl.design.coupler(hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3), b_c=0.05).two_port
+    ((words, place),) = hatched(port.plot().axes[0]).items()
+    assert "not absolutely stable" in words and place.y0 < 0 == place.y1
+
+
+LAW = hl.laws.LinearLaw.of("ellis", K=300, T=1e-3)
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda: hl.passivity.nyquist_disk(hl.Device(b=0.1), LAW).plot(),
+        lambda: hl.passivity.margin(hl.Device(b=0.06), LAW).plot(),
+        lambda: hl.stability.root_locus(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)).plot(),
+        lambda: hl.design.coupler(hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3), b_c=0.05).plot(),
+    ],
+    ids=["disk", "margin", "locus", "coupler"],
+)
+def test_titles_legends_and_labels_lie_within_the_picture(draw):
+    figure = draw()
+    figure.canvas.draw()
+    texts = [text for axes in figure.axes for text in (axes.title, axes.xaxis.label, axes.yaxis.label)]
+    for shown in [*texts, *figure.legends]:
+        inner = shown.get_window_extent()
+        assert not inner.width or (inner.x0 >= 0 and inner.y0 >= 0 and inner.x1 <= figure.bbox.x1 and inner.y1 <= figure.bbox.y1)
+    legends = [legend.get_window_extent() for legend in figure.legends]
+    labels = [axes.xaxis.label.get_window_extent() for axes in figure.axes]
+    assert not any(legend.overlaps(label) for legend in legends for label in labels)

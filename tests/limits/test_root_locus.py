@@ -70,7 +70,12 @@ def test_a_scene_and_what_is_refused():
 
 def test_picture():
     pytest.importorskip("matplotlib")
-    axes = root_locus(paddle(), law="backward_difference").plot().axes[0]
+    locus = root_locus(paddle(), law="backward_difference")
+    axes = locus.plot().axes[0]
+    (inset,) = axes.child_axes  # shows where the pole begins and where it leaves
+    (low, high), (left, right) = inset.get_ylim(), inset.get_xlim()
+    z = np.exp(2j * np.pi * locus.limit.frequency * locus.T)
+    assert left < z.real < right and low < z.imag < high
     labels = [text.get_text() for text in axes.figure.legends[0].get_texts()]
     assert any(label.startswith("leaves at K = 30997.5 N/m, 136.3 Hz") for label in labels)
     assert axes.get_xlabel() == "Re z" and axes.get_aspect() == 1

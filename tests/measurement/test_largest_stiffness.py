@@ -191,7 +191,7 @@ def test_a_push_that_friction_holds_tells_nothing():
 def test_a_damper_that_is_unstable_alone_is_not_tried():
     found = largest_stiffness(paddle(), B=-0.2)
     assert found.K == 0 and not found.trials and "no stiffness helps: B = -0.2 N s/m" in str(found)
-    assert found.plot().axes[0].get_title() == "zoh: none comes to rest quietly"
+    assert found.plot().axes[0].get_title() == "stiffest wall, law zoh: none comes to rest quietly"
 
 
 def test_a_length_without_samples_is_refused_by_name():

@@ -45,7 +45,9 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
     methods = list(dict.fromkeys(row.method for rows in shown.values() for row in rows))
     down, across = -(-len(targets) // ACROSS), min(ACROSS, len(targets))
     with house_style():
-        figure = new_figure(height=1.0 + 3.4 * down + 0.25 * ((len(methods) + 6) // (2 * across) + 1), width=5.0 * across + 0.6)
+        figure = new_figure(
+            height=1.0 + 3.4 * down + 0.25 * ((len(methods) + 6) // (2 * across) + 1), width=(7.2, 10.6)[across - 1]
+        )
         panels = figure.subplots(down, across, sharey=True, squeeze=False).ravel()
         for axes, target in zip(panels, targets, strict=False):
             _panel(axes, shown[target], methods, asked)
@@ -110,7 +112,7 @@ def _sensor(axes, floors):
     for floor, periods in labels:
         text = "sensor at " + ", ".join(f"{T * 1e3:g}" for T in sorted(periods)) + " ms"
         style = {"ha": "right", "va": "bottom", "fontsize": "x-small", "color": "#4d4d4d"}
-        axes.annotate(text, (0.995, 100 * floor), xycoords=("axes fraction", "data"), **style)
+        axes.annotate(text, (0.995, 100 * floor), xycoords=("axes fraction", "data"), annotation_clip=True, **style)
 
 
 def front(rows):
@@ -152,4 +154,4 @@ def _legend(figure, axes, methods, rows, asked):
     if any(row.precision == "float64" for row in rows):
         signs += [sign("black edge: float64", marker="o", markeredgecolor="black", **grey)]
     signs += [sign("asked for: left of and below it", color="black", linestyle=":")]
-    figure.legend(handles=signs, loc="outside lower center", ncols=2 if len(figure.axes) == 1 else 4, **FRAME)
+    figure.legend(handles=signs, loc="outside lower center", ncols=2 if len(figure.axes) == 1 else 4, fontsize="small", **FRAME)

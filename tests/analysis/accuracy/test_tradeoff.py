@@ -230,9 +230,13 @@ def test_it_prints_draws_and_writes_its_table(found, tmp_path):
     with open(found.table.to_csv(tmp_path / "rows.csv"), newline="") as file:
         rows = list(csv.DictReader(file))
     assert float(rows[0]["err_max"]) == found.table[0].err_max and len(rows) == len(found.table)
-    assert found.plot("uno").axes[0].get_title() == f"{found.name}, on uno"
+    assert found.plot("uno").get_suptitle() == f"{found.name}: error against load, on uno"
     pc, uno = found.plot().axes
-    assert (pc.get_xscale(), pc.get_yscale(), uno.get_title()) == ("log", "log", "uno")
+    assert (pc.get_xscale(), pc.get_yscale(), uno.get_title()) == ("log", "log", "on uno")
+    for axes in (pc, uno):  # no decade is empty, but for the one in which what is asked for lies
+        loads, errors = np.concatenate([line.get_xydata() for line in axes.lines if line.get_marker() in tuple("s^o")]).T
+        for (low, high), many in ((axes.get_xlim(), loads), (axes.get_ylim(), errors)):
+            assert many.min() / 30 < low < many.min() and many.max() < high < 30 * many.max()
     dashed = [line.get_ydata()[0] for line in uno.lines if line.get_linestyle() == "--" and len(set(line.get_ydata())) == 1]
     assert 100 * found.table[0].sensor_floor == pytest.approx(max(dashed), rel=0.5)
 

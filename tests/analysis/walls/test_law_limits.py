@@ -33,7 +33,7 @@ def test_a_predictor_s_limit_too():
 def test_it_prints_and_draws(found):
     assert "under a push of 1 N" in str(found) and "Hz" in found["zoh"].why
     (axes,) = found.plot().axes
-    assert axes.get_xscale() == "log" and axes.get_xlabel() == "stiffest wall that stands [N/m]"
+    assert axes.get_xscale() == "log" and axes.get_xlabel() == "stiffest wall that does not chatter [N/m]"
     with pytest.raises(AnalysisError, match="no limit of 'ellis'; there are zoh"):
         found["ellis"]
 
