@@ -1,46 +1,60 @@
-"""Public checks of lab 08: numbers and the sentences that teach; no answers."""
+"""Public checks of lab 08: numbers and the sentences of the feedback; no answers."""
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-PULLS = "On the way out the damper asks for a pull, and the contact would stick: N is never below 0."
-FROM_AFAR = "The gap is open there, and its rate alone makes a force: a contact acts where it is closed only."
-NEITHER = "Two conditions are missing: no force where the gap is open, and never a pull."
-DAMPER_SIGN = "While the bodies approach, the gap's rate is negative and the damper adds to the force: -k gap - b rate."
-NO_DAMPER = "The damper is missing: -b rate."
-ONE_STEP = "That contact would last a single step; ten are needed."
-BALL_ALONE = "That is for a plate that is held. A free one gives way: take the effective mass m M/(m + M)."
-TOGETHER = "The two swing against each other, not as one lump: the effective mass is m M/(m + M), not m + M."
-FULL_SWING = "A contact lasts half a period of the swing, pi sqrt(mu/k), not a whole one."
-TEN_OUTSIDE = "The time goes with 1/sqrt(k), so that the ten is squared with the step."
-NO_SQUARE = "The square is missing: a time goes with 1/sqrt(k), so that k goes with (pi/(10 h))^2."
-ONLY_EQUAL = "That makes the velocities equal, as if nothing sprang back: the impulse is 1 + e times that."
-HELD = "That is the rebound from a plate that does not move away; here it takes up momentum."
-PLASTIC = "The impulse is 1 + e times the one that makes the velocities equal: that first, then the rebound."
-HEAVY = "That is the impulse on a plate that is held, (1 + e) m (w - v); a free one gives way: take m M/(m + M)."
-IMPULSE_SIGN = "The ball falls and is thrown up: the impulse on it is positive, upwards."
-PLATE_SIGN = "What the ball gains upwards the plate loses: w' = w - p/M."
-RELATIVE = "It is the *relative* velocity that turns round: v' - w' = -e (v - w)."
-NO_E = "At s = tau the pulse is p/(e tau), with Euler's e = 2.718..."
-TRIANGLE = "That is the width of a triangle with that peak; the pulse p s/tau^2 exp(-s/tau) peaks at p/(e tau)."
-INVERSE_E = "Solve p/(e tau) = F_max for tau: the e stands below."
-WEIGHT = "That is the weight alone; a plate that accelerates upwards by a has to give m (g + a)."
-DOWN = "a counts upwards: a plate that moves off downwards, a < 0, makes the ball lighter."
-PULLED = "A reaction never pulls: where m (g + a) is negative the contact is open, and N = 0."
-CLOSED = "While the plate pushes the gap stays closed: its acceleration is 0, not negative."
-NO_WEIGHT = "The weight is missing: even on a plate at rest, a = 0, the ball presses with m g. N is m (g + a), where that pushes."
-FALLS = "Gravity is missing: the free ball falls with g, the plate moves with a, and the gap opens with -g - a."
-OTHER_SIGN = "The free ball falls with g and the plate falls faster: the gap opens with -g - a > 0."
-SUM = "That is the trace, the sum of both eigenvalues; the larger one decides (numpy.linalg.eigvals)."
-PRODUCT = "That is the determinant, the product of both eigenvalues; the larger one decides."
-SMALL = "That is the smaller one; the larger decides what remains."
-REAL_PART = "Take the magnitude of each eigenvalue (numpy.abs), of complex and negative ones too, and then the largest."
+PULLS = (
+    "While the bodies separate, your damping term makes the force negative, and the bodies would stick together. The "
+    "force is never below 0."
+)
+FROM_AFAR = "The gap is open there, but your damping term still produces a force. A contact may act only where the gap is closed."
+NEITHER = "Two conditions are missing. The force is zero where the gap is open, and the force never pulls."
+DAMPER_SIGN = (
+    "The sign of the damping term is wrong. While the bodies approach, the rate of the gap is negative and the damper "
+    "adds to the force: -k gap - b rate."
+)
+NO_DAMPER = "The damping term -b rate is missing."
+ONE_STEP = "With that stiffness a contact lasts a single step, but ten steps are required."
+BALL_ALONE = "That is the limit for a plate that is held. A free plate moves away, so use the effective mass m M/(m + M)."
+TOGETHER = (
+    "The two bodies oscillate against each other and do not move as one body. The effective mass is m M/(m + M), not m + M."
+)
+FULL_SWING = "You used a whole cycle of the oscillation. A contact lasts half a cycle, pi sqrt(mu/k)."
+TEN_OUTSIDE = "The contact time is proportional to 1/sqrt(k), so the factor ten must be squared together with the step."
+NO_SQUARE = "The square is missing. The contact time is proportional to 1/sqrt(k), so k is proportional to (pi/(10 h))^2."
+ONLY_EQUAL = "That impulse makes the velocities equal, as if e were 0. The impulse is 1 + e times as large."
+HELD = "That is the rebound from a plate that does not move. Here the plate takes up momentum."
+PLASTIC = (
+    "The impulse is too small. It is 1 + e times the impulse that makes the velocities equal, because the bodies also rebound."
+)
+HEAVY = (
+    "That is the impulse on a plate that is held, (1 + e) m (w - v). A free plate moves away, so use m M/(m + M) instead of m."
+)
+IMPULSE_SIGN = "The sign of the impulse is wrong. The ball falls and is thrown up, so the impulse on the ball is positive."
+PLATE_SIGN = "The plate loses the momentum that the ball gains: w' = w - p/M."
+RELATIVE = "Restitution reverses the *relative* velocity: v' - w' = -e (v - w)."
+NO_E = "Euler's number e = 2.718... is missing. At s = tau the pulse is p/(e tau)."
+TRIANGLE = "That is the width of a triangle with this peak. The pulse p s/tau^2 exp(-s/tau) peaks at p/(e tau)."
+INVERSE_E = "Solve p/(e tau) = F_max for tau: e belongs in the denominator."
+WEIGHT = "That is the weight alone. A plate that accelerates upwards with a must push with m (g + a)."
+DOWN = "The sign of a is wrong. a is positive upwards, so a plate that accelerates downwards, a < 0, reduces the reaction."
+PULLED = "A reaction never pulls. Where m (g + a) is negative, the contact opens and N = 0."
+CLOSED = "While the plate pushes, the gap stays closed, so its acceleration is 0 and not negative."
+NO_WEIGHT = (
+    "The weight is missing. Even on a plate at rest, a = 0, the ball presses with m g. N is m (g + a) where this is positive."
+)
+FALLS = "Gravity is missing. The free ball falls with g and the plate moves with a, so the gap opens with -g - a."
+OTHER_SIGN = "The sign is wrong. The free ball falls with g and the plate falls faster, so the gap opens with -g - a > 0."
+SUM = "That is the trace, the sum of both eigenvalues. The larger eigenvalue decides (numpy.linalg.eigvals)."
+PRODUCT = "That is the determinant, the product of both eigenvalues. The larger eigenvalue decides."
+SMALL = "That is the smaller eigenvalue. The larger eigenvalue decides whether errors die out."
+REAL_PART = "Take the magnitude of each eigenvalue (numpy.abs), which may be complex or negative, and then the largest magnitude."
 
 LAB = Lab(
     number="08",
     title="Contact",
     minutes=120,
     exercises=(
-        Exercise("prediction", kind="prediction", asks="the force that gives the impact's impulse in 1 ms [N]"),
+        Exercise("prediction", kind="prediction", asks="the force that applies the impulse of the impact within 1 ms [N]"),
         Exercise(
             "penalty_force",
             points=2,
@@ -61,7 +75,15 @@ LAB = Lab(
                         (0.0, 0.45, 0.9, 1.0, 0.2, -0.35, -1.7): NEITHER,
                         (0.0, 0.0, 0.1, 1.0, 0.8, 0.85, 0.0): DAMPER_SIGN,
                         (0.0, 0.0, 0.5, 1.0, 0.5, 0.25, 0.0): NO_DAMPER,
-                        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0): "gap is negative inside: the spring's force is -k gap.",
+                        (
+                            0.0,
+                            0.0,
+                            0.0,
+                            0.0,
+                            0.0,
+                            0.0,
+                            0.0,
+                        ): "The force is zero everywhere. The gap is negative inside, so the force of the spring is -k gap.",
                     },
                 ),
                 Case(
@@ -71,7 +93,7 @@ LAB = Lab(
                     slips={(3.0, 1.0, -4.0): NEITHER},
                 ),
             ),
-            hint="where may it act at all, and which sign may it never have, whatever the damper asks for?",
+            hint="Where may the contact act at all? Which sign may its force never have?",
             matters="A contact can push but never pull. A law without this condition makes bodies stick together.",
         ),
         Exercise(
@@ -99,8 +121,10 @@ LAB = Lab(
                     slips={986960.4401089359: ONE_STEP, 19739.20880217872: BALL_ALONE, 98696.0440108936: TEN_OUTSIDE},
                 ),
             ),
-            hint="how long does a contact last, and how long are ten steps?",
-            matters=("A contact that lasts only a few steps bounces differently each time, so the step limits the stiffness."),
+            hint="How long does a contact last? How long are ten steps?",
+            matters=(
+                "A contact that lasts only a few steps returns a different energy each time, so the step limits the stiffness."
+            ),
         ),
         Exercise(
             "two_springs",
@@ -108,24 +132,30 @@ LAB = Lab(
             points=1,
             asks='"a", "b", "c" or "d"',
             options={
-                "a": "for both at the passivity of the device",
-                "b": "for K at the steps that a contact lasts, for k_b at Eq. (23.10)",
-                "c": "for k_b at the steps that a contact lasts, for K at Eq. (23.10)",
-                "d": "at neither",
+                "a": "for both, the passivity of the device",
+                "b": "for K, the number of steps in a contact; for k_b, Eq. (23.10)",
+                "c": "for k_b, the number of steps in a contact; for K, Eq. (23.10)",
+                "d": "for neither",
             },
             cases=(
                 Case(
                     {},
                     "c",
                     slips={
-                        "a": "The handle meets the coupler alone; k_b acts between two bodies that the solver moves.",
-                        "b": "It is the other way round: which of the two springs is tied to the sampled handle?",
-                        "d": "Springs of steel create none. A sampled one does, and one in too coarse steps as well.",
+                        "a": (
+                            "Only the coupler touches the handle. k_b acts between two bodies that the solver moves, "
+                            "so k_b does not appear in Eq. (23.10)."
+                        ),
+                        "b": "You exchanged the two springs. Only one of them is connected to the sampled handle.",
+                        "d": (
+                            "A steel spring generates no energy, but a sampled spring does, and so does a spring that "
+                            "is integrated in steps that are too large."
+                        ),
                     },
                 ),
             ),
-            hint="which spring sees the sampled handle, and which one only the solver?",
-            matters="Each spring has a limit of its own, so you can tell which of them you may still make stiffer.",
+            hint="Which spring is connected to the sampled handle, and which one only to bodies inside the solver?",
+            matters="Each spring has its own limit, so you know which one you may still make stiffer.",
         ),
         Exercise(
             "impact",
@@ -152,7 +182,10 @@ LAB = Lab(
                         ({"v": -0.1}, ONLY_EQUAL),
                         ({"v": 0.8}, HELD),
                         ({"p": 0.12}, HEAVY),
-                        ({"p": 0.04}, "The plate moves as well: the impulse goes with the relative velocity w - v."),
+                        (
+                            {"p": 0.04},
+                            ("The plate moves as well, so the impulse is proportional to the relative velocity w - v."),
+                        ),
                     ),
                 ),
                 Case(
@@ -161,7 +194,7 @@ LAB = Lab(
                     slips=(({"v": 0.5}, RELATIVE), ({"v": -0.25}, PLASTIC), ({"p": 0.075}, RELATIVE)),
                 ),
             ),
-            hint="three unknowns need three equations: what does p do to each body, and what does restitution say?",
+            hint="Three unknowns need three equations. What does p do to each body, and what does restitution state?",
             matters="An impact that is solved as an event needs neither a stiff spring nor a short step.",
         ),
         Exercise(
@@ -182,7 +215,7 @@ LAB = Lab(
                     slips={0.0025: NO_E, 0.005: TRIANGLE, 0.006795704571147613: INVERSE_E},
                 ),
             ),
-            hint="where does the pulse peak, and how large is F(s) there?",
+            hint="At which time does the pulse peak? How large is F(s) there?",
             matters=(
                 "No motor applies an impulse in zero time. A pulse delivers the same impulse with a force that "
                 "the motor can produce."
@@ -216,8 +249,8 @@ LAB = Lab(
                 ),
                 Case({"a": -9.81, "m": 0.05, "g": 9.81}, {"N": 0.0, "gap_acceleration": 0.0}),
             ),
-            hint="which N would keep the gap closed? And what if that N would have to pull?",
-            matters="One condition decides between resting and taking off, without any stiffness of the contact.",
+            hint="Which N keeps the gap closed? What happens if this N is negative?",
+            matters="One condition decides whether the ball rests or leaves the plate, and the contact needs no stiffness.",
         ),
         Exercise(
             "largest_multiplier",
@@ -240,7 +273,7 @@ LAB = Lab(
                     slips={0.64: PRODUCT, -2.323302752293578: SUM, 0.319372372666511: SMALL, -0.319372372666511: REAL_PART},
                 ),
             ),
-            hint="which eigenvalue decides in the long run? They may be complex or negative (numpy.linalg.eigvals).",
+            hint="Which eigenvalue decides after many flights? Eigenvalues may be complex or negative (numpy.linalg.eigvals).",
             matters="It shows whether a small deviation dies out or grows from one impact to the next.",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
