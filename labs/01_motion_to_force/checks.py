@@ -2,16 +2,22 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-DAMPER_SIGN = "The damper feeds the hand: its power F v must be positive, so its force points along v, as a spring's along x."
-TURNED = "The sign is turned: F_e is the force ON the environment, Eq. (23.1); the motor applies -F_e."
-RUNS_AWAY = (
-    "The mass runs away from the handle: the coupler must pull it TOWARDS the handle, so m z'' = +F_c with F_c = K (x - z) + ..."
+DAMPER_SIGN = (
+    "Your damper supplies energy. Its power F v must be positive, so its force points in the direction of v, as "
+    "that of a spring points in the direction of x."
 )
-DAMPER_RELATIVE = "The coupler's damper has the wrong sign: it must resist the relative velocity x' - z'."
+TURNED = "The sign is wrong: F_e is the force ON the environment, Eq. (23.1). The motor applies -F_e to the handle."
+RUNS_AWAY = (
+    "Your mass runs away from the handle. The coupler must pull it TOWARDS the handle, so m z'' = +F_c with F_c = K (x - z) + ..."
+)
+DAMPER_RELATIVE = "The damper of the coupler has the wrong sign: it must resist the relative velocity x' - z'."
 SPRING_AWAY = "The spring has the wrong sign: its force on the mass is K (x - z), towards the handle."
-DIFFERENCES = "A spring feels how far apart its ends are, x - z, and a damper how fast they part, v - z': differences, not sums."
-SPRING_ALONE = "That is the spring alone: the coupler has a damper beside it."
-DAMPER_BETWEEN = "The damper lies between handle and mass: it sees x' - z', not z' alone."
+DIFFERENCES = (
+    "You used sums. The force of a spring depends on the distance between its ends, x - z, and that of a damper "
+    "on the rate of this distance, v - z'."
+)
+SPRING_ALONE = "That is the spring alone. The coupler also has a damper in parallel with the spring."
+DAMPER_BETWEEN = "The damper connects the handle and the mass, so its force depends on x' - z', not on z' alone."
 STEPS = {
     "x": [0, 0.002, 0.005, 0.008, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01],
     "T": 5e-3,
@@ -24,7 +30,7 @@ LAB = Lab(
     title="From equations of motion to force",
     minutes=90,
     exercises=(
-        Exercise("prediction", kind="prediction", asks="the frequency at which the mass rings in your hand [Hz]"),
+        Exercise("prediction", kind="prediction", asks="the frequency at which the mass oscillates in your hand [Hz]"),
         Exercise(
             "spring_damper_force",
             points=1,
@@ -37,26 +43,34 @@ LAB = Lab(
                     slips={
                         -2.25: TURNED,
                         2.55: DAMPER_SIGN,
-                        2.4: "That is the spring alone.",
-                        -0.15: "The spring is missing.",
-                        2399.85: "The spring's force is 1000 times too large: x is in metres already, and k in N/m.",
+                        2.4: "That is the spring alone. Add the force of the damper.",
+                        -0.15: "That is the damper alone. Add the force of the spring.",
+                        2399.85: "The force of the spring is 1000 times as large as expected: x is in metres and k in N/m.",
                     },
                 ),
                 Case(
                     {"x": 0.0, "v": 0.2, "k": 200.0, "b": 1.5},
                     0.3,
                     unit="N",
-                    slips={-0.3: "Moved to the right, a damper is pushed to the right: it takes power in, F v > 0."},
+                    slips={
+                        -0.3: (
+                            "The sign is wrong. A damper that moves to the right is pushed to the right: it absorbs "
+                            "power, F v > 0."
+                        )
+                    },
                 ),
             ),
-            hint="stretch a spring with your hands: which way do you push it where x > 0? Then the same for the damper",
-            matters=("Every environment in these labs is a force like this one, and one sign convention keeps them consistent."),
+            hint=(
+                "In which direction do you pull the end of a spring where x > 0? In which direction do you push a "
+                "damper where v > 0?"
+            ),
+            matters="Every environment in these labs is a force like this one, and one sign convention keeps them consistent.",
         ),
         Exercise(
             "spring_damper",
             kind="scene",
             points=1,
-            asks="a scene with force=..., of k, b, x(n) and v(n)",
+            asks="a scene with force=..., a formula of k, b, x(n) and v(n)",
             cases=(
                 Case(
                     {"x": [0, 0.001, 0.003, 0.003], "T": 1e-3, "values": {"k": 200.0, "b": 0.5}},
@@ -65,7 +79,7 @@ LAB = Lab(
                     slips={(0.0, -0.7, -1.6, -0.6): TURNED, (0.0, -0.3, -0.4, 0.6): DAMPER_SIGN},
                 ),
             ),
-            hint="What did spring_damper_force say? Which of k, b, x(n), v(n) stands for which of its arguments?",
+            hint="What does your spring_damper_force return? Which of k, b, x(n) and v(n) replaces which of its arguments?",
             matters="You wrote only the physics. The same scene runs in the simulation and on a board.",
         ),
         Exercise(
@@ -79,12 +93,12 @@ LAB = Lab(
                     {},
                     "a",
                     slips={
-                        "b": "Everything inside is in SI; only plots show millimetres. Compile with T=5e-4 and look again.",
-                        "c": "The board makes a duty of F, after the program. Compile with T=5e-4 and look again.",
+                        "b": "A program computes in SI units; only plots show millimetres. Compile with T=5e-4 and look again.",
+                        "c": "The board converts F into a duty after the program has ended. Compile with T=5e-4 and look again.",
                     },
                 ),
             ),
-            hint="Compile the same scene with T=5e-4 and compare: what became of the 1000?",
+            hint="Compile the same scene with T=5e-4. Which number replaces the 1000?",
             matters="If you can read the compiled program, you can find out where each number in a force comes from.",
         ),
         Exercise(
@@ -103,18 +117,24 @@ LAB = Lab(
                     slips=(
                         (
                             {"k": 192.5},
-                            "That is a spring fitted alone: it takes some of the damper's force for its own. Fit both at once.",
+                            (
+                                "You fitted the spring alone, so a part of the damper's force is counted as the "
+                                "spring's. Fit both at once."
+                            ),
                         ),
                         (
                             {"b": -2.757294430},
-                            "That is a damper fitted alone: it takes some of the spring's force for its own. Fit both at once.",
+                            (
+                                "You fitted the damper alone, so a part of the spring's force is counted as the "
+                                "damper's. Fit both at once."
+                            ),
                         ),
-                        ({"k": 1.480876092}, "k and b are swapped: what the column of x is multiplied by is k."),
-                        ({"k": 199.676498}, "There is no constant force in this model: two columns, x and v."),
+                        ({"k": 1.480876092}, "k and b are swapped: k is the coefficient of the column of x."),
+                        ({"k": 199.676498}, "You also fitted a constant force. The model has none: use two columns, x and v."),
                     ),
                 ),
             ),
-            hint="Each sample is one equation for k and b: what stands beside k in it, and what beside b?",
+            hint="Each sample is one equation for k and b. What is the factor of k in it, and what is the factor of b?",
             matters="The same fit measures stiffness and damping from the recording of a real device.",
         ),
         Exercise(
@@ -127,20 +147,28 @@ LAB = Lab(
                     1.28,
                     unit="N",
                     slips={
-                        0.00128: "A second difference is divided by T squared; by T it would be a velocity.",
-                        2.56: "The middle sample has the weight 2, and it has not moved yet: only x(n) has.",
-                        12.8: "That is the acceleration; the force is m times it.",
+                        0.00128: (
+                            "You divided by T. A second difference is divided by T squared; divided by T, it would "
+                            "belong to a velocity."
+                        ),
+                        2.56: "The factor 2 belongs to the middle sample, which has not changed yet. Only x(n) has changed.",
+                        12.8: "That is the acceleration. Multiply it by m to get the force.",
                     },
                 ),
                 Case(
                     {"m": 0.05, "metres_per_count": 1e-4, "T": 2e-3},
                     1.25,
                     unit="N",
-                    slips={0.0025: "A second difference is divided by T squared; by T it would be a velocity."},
+                    slips={
+                        0.0025: (
+                            "You divided by T. A second difference is divided by T squared; divided by T, it would "
+                            "belong to a velocity."
+                        )
+                    },
                 ),
             ),
-            hint="Which of x(n), x(n-1) and x(n-2) has moved at that sample, and which has not yet?",
-            matters=("A force from a second difference jumps at every encoder count, so a virtual mass needs another approach."),
+            hint="Which of x(n), x(n-1) and x(n-2) has changed at that sample, and which have not changed yet?",
+            matters="A force from a second difference jumps at every encoder count, so a virtual mass needs another approach.",
         ),
         Exercise(
             "mass_equation",
@@ -171,24 +199,30 @@ LAB = Lab(
                         (-8.8, -4.4, -4.0, -7.6, 7.2, -9.4, 4.0, -9.6): SPRING_AWAY,
                         (22.8, 11.4, 11.6, 23.4, 6.8, 22.2, 35.6, 23.6): DIFFERENCES,
                         (23.2, 11.6, 12.0, 24.4, 7.2, 22.6, 36.0, 22.4): DIFFERENCES,
-                        (11.2, 5.6, 6.4, 13.6, -4.8, 10.0, -1.6, 9.6): "The damper counts twice.",
-                        (-6.2, -3.1, -3.0, -5.9, -6.2, -6.2, -19.0, -7.0): "The other end of the coupler is the handle, which "
-                        "moves: x(t) and v(t) belong in its force.",
-                        (640.012, 320.006, 320.012, 640.03, 639.992, 160.012, 639.996, 0.012): "K and b_c are swapped: K goes "
-                        "with the positions, b_c with the velocities.",
-                        (0.59, -4.61, -4.21, 1.79, -15.41, -0.01, -12.21, -0.21): "There is no weight in this model: the "
-                        "coupler's force alone acts on the mass.",
+                        (11.2, 5.6, 6.4, 13.6, -4.8, 10.0, -1.6, 9.6): "Your damper has twice its force: b_c appears twice.",
+                        (-6.2, -3.1, -3.0, -5.9, -6.2, -6.2, -19.0, -7.0): (
+                            "You left out the handle, which is the other end of the coupler and moves. Use x(t) and "
+                            "v(t) in the force."
+                        ),
+                        (640.012, 320.006, 320.012, 640.03, 639.992, 160.012, 639.996, 0.012): (
+                            "K and b_c are swapped: K multiplies the difference of the positions, b_c that of the velocities."
+                        ),
+                        (0.59, -4.61, -4.21, 1.79, -15.41, -0.01, -12.21, -0.21): (
+                            "You included a weight. This model has none: only the force of the coupler acts on the mass."
+                        ),
                     },
                 ),
             ),
-            hint="Newton: m z'' is the sum of the forces ON the mass. With the handle to its right, which way is it pulled?",
-            matters=("The acceleration of the mass now follows from forces, so nobody has to differentiate the encoder twice."),
+            hint=(
+                "Which forces act ON the mass? If the handle is to the right of the mass, in which direction is the mass pulled?"
+            ),
+            matters="The acceleration of the mass now follows from forces, so the position is not differentiated twice.",
         ),
         Exercise(
             "mass_on_coupler",
             kind="scene",
             points=2,
-            asks="a scene of a mass m with coordinate z, tied to the handle by K and b_c; force, eom, watch=[z]",
+            asks="a scene of a mass m with coordinate z, connected to the handle by K and b_c; force, eom, watch=[z]",
             rtol=1e-5,
             cases=(
                 Case(
@@ -242,8 +276,10 @@ LAB = Lab(
                             -2.729270253,
                             -3.234379173,
                             -3.875019361,
-                        ): "Both signs are turned, as with K (z - x): the force on the mass points "
-                        "to the handle, and the force on the environment is that same force.",
+                        ): (
+                            "Both signs are wrong, as if you had used K (z - x). The force on the mass points "
+                            "towards the handle, and the force on the environment is the same force."
+                        ),
                         (
                             0.0,
                             0.24,
@@ -279,7 +315,7 @@ LAB = Lab(
                             0.77850388,
                             0.491581859,
                             0.185062796,
-                        ): "The mass does not feel the damper that the hand feels: action and reaction must be the same F_c.",
+                        ): "The damper acts on the hand but not on the mass. Both must feel the same F_c, with opposite signs.",
                         (
                             0.0,
                             0.4,
@@ -291,8 +327,10 @@ LAB = Lab(
                             0.86629578,
                             0.59320974,
                             0.299310094,
-                        ): "x(n) in an equation of motion is a handle that stands still over the whole period; "
-                        "write x(t) and v(t), the handle as it moves between the samples.",
+                        ): (
+                            "In an equation of motion, x(n) is a handle that stays still for the whole period. "
+                            "Write x(t) and v(t), the handle that moves between the samples."
+                        ),
                         (
                             0.0,
                             0.32,
@@ -304,7 +342,7 @@ LAB = Lab(
                             0.790914967,
                             0.511856227,
                             0.215270371,
-                        ): "The hand does not feel the damper that the mass feels: action and reaction must be the same F_c.",
+                        ): "The damper acts on the mass but not on the hand. Both must feel the same F_c, with opposite signs.",
                     },
                 ),
                 Case(
@@ -316,16 +354,19 @@ LAB = Lab(
                     slips=(
                         (
                             {"F": (1.6, 1.952398934, 2.343034014, 2.593001917, 2.535909069, 2.019197785)},
-                            "The mass begins at 0, "
-                            "far from the handle, and the coupler jerks it there: hl.coordinate with initial=x(n).",
+                            (
+                                "The mass begins at 0, far from the handle, so the coupler jerks it. Use "
+                                "hl.coordinate with initial=x(n)."
+                            ),
                         ),
                     ),
                 ),
             ),
-            hint="What does the hand feel, and what the mass? How often does F_c appear, then, and which way does it pull?",
-            matters=(
-                "A force law with equations of motion describes any virtual body; the labs on pendulums and contact do the same."
+            hint=(
+                "Which force does the hand feel, and which force does the mass feel? In which direction does F_c "
+                "pull each of them?"
             ),
+            matters=("A force law with equations of motion describes any virtual body, such as the pendulum of lab 06."),
         ),
         Exercise(
             "resonance",
@@ -337,24 +378,29 @@ LAB = Lab(
                     {"m": 0.1, "K": 160.0, "b_c": 0.02},
                     {"f": 6.366197724, "zeta": 0.0025},
                     slips=(
-                        ({"f": 40.0}, "That is in rad/s; a hertz is 2 pi of them."),
-                        ({"zeta": 0.005}, "The critical damping is 2 sqrt(K m), not sqrt(K m)."),
-                        ({"zeta": 0.1}, "That is a decay rate, b_c/(2m) in 1/s; divide it by the natural frequency in rad/s."),
+                        ({"f": 40.0}, "That is in rad/s. Divide by 2 pi to get hertz."),
+                        ({"zeta": 0.005}, "You divided by sqrt(K m). The critical damping is 2 sqrt(K m)."),
+                        ({"zeta": 0.1}, "That is a decay rate, b_c/(2m) in 1/s. Divide it by the natural frequency in rad/s."),
                     ),
                 ),
                 Case(
                     {"m": 0.05, "K": 300.0, "b_c": 1.5},
                     {"f": 12.328088881, "zeta": 0.193649167},
-                    slips=(({"f": 12.094728558}, "That is the frequency with the damper; the natural one is without."),),
+                    slips=(
+                        (
+                            {"f": 12.094728558},
+                            ("That is the frequency with the damper. The natural frequency is that without the damper."),
+                        ),
+                    ),
                 ),
             ),
-            hint="What does Newton's law of the mass become with x = 0? And how does a first course write the same equation?",
-            matters=("You can feel this frequency in your hand and find it in a recording, so it tests theory and simulation."),
+            hint="What does Newton's law of the mass become for x = 0? What are its natural frequency and its damping ratio?",
+            matters="You can feel this frequency in your hand and find it in a recording, so it tests theory and simulation.",
         ),
         Exercise(
             "discussion",
             kind="text",
-            asks="what the second difference does, and what the coupler costs, in 40 words or more",
+            asks="what the second difference does, and what disadvantage the coupler has, in 40 words or more",
             least_words=40,
         ),
     ),

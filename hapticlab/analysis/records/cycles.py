@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from ...base.telemetry import Telemetry
 
 
-def frequency(log: Telemetry, name: str = "x") -> float:
+def frequency(log: Telemetry, name: str = "x", *, begin: float = 0.0) -> float:
     """Frequency [Hz] of a recorded oscillation: its cycles from the first to the last upward crossing of its mean.
 
-    The crossings are interpolated between samples. The mean is that of the whole record, so a record should hold several
+    The crossings are interpolated between samples. The mean is that of the part from ``begin`` on, which should hold several
     cycles about a resting position. :func:`hapticlab.chatter` tells chatter of a wall from decay and from driven motion.
 
     Parameters
@@ -24,6 +24,8 @@ def frequency(log: Telemetry, name: str = "x") -> float:
     log : Telemetry
     name : str
         Of what was recorded: ``"x"``, ``"F"``, a watched state.
+    begin : float
+        Time after the start of the record from which on it is used [s], such as when the hand rests.
 
     Returns
     -------
@@ -48,7 +50,8 @@ def frequency(log: Telemetry, name: str = "x") -> float:
         raise AnalysisError(
             f"{name} was not recorded; this log has {', '.join(log.columns)}. Watch it: hl.Scene(..., watch=[...])"
         )
-    y = np.asarray(getattr(log, name), float)
+    used = log.t >= begin + (log.t[0] if len(log) else 0.0)
+    t, y = log.t[used], np.asarray(getattr(log, name), float)[used]
     y = y - y.mean() if len(y) else y
     before = np.flatnonzero((y[:-1] < 0) & (y[1:] >= 0))
     if len(before) < 2:
@@ -56,6 +59,6 @@ def frequency(log: Telemetry, name: str = "x") -> float:
             f"frequency of {name}: the record has {len(before)} upward crossing(s) of its mean and a frequency needs two. "
             "Record more cycles, and hold still while it oscillates."
         )
-    step = log.t[before + 1] - log.t[before]
-    crossings = log.t[before] - y[before] * step / (y[before + 1] - y[before])
+    step = t[before + 1] - t[before]
+    crossings = t[before] - y[before] * step / (y[before + 1] - y[before])
     return float((len(crossings) - 1) / (crossings[-1] - crossings[0]))

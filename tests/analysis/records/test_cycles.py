@@ -28,3 +28,12 @@ def test_what_holds_no_two_cycles_is_rejected():
         hl.records.frequency(log)
     with pytest.raises(AnalysisError, match="theta was not recorded; this log has t, x, v, F"):
         hl.records.frequency(log, "theta")
+
+
+def test_only_what_comes_after_begin_is_used():
+    t = 7.0 + np.arange(0, 3, 1e-3)
+    x = np.where(t < 8, 0.5, 0.01 * np.sin(2 * np.pi * 4 * t))
+    log = Telemetry(t=t, x=x, v=0 * t, F=0 * t, T=1e-3)
+    assert hl.records.frequency(log, begin=1.0) == pytest.approx(4.0, rel=1e-6)
+    with pytest.raises(AnalysisError, match="a frequency needs two"):
+        hl.records.frequency(log)
