@@ -2,30 +2,31 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-EXPLICIT = "That is forward Euler: here z moves with the new velocity."
-DAMPED_TOO = "The new velocity moves z, and the damper is in the new velocity: it shows in the upper row as well."
-LATE = "The acceleration belongs to the start of the step: first the new velocity, from the old z, then the new z."
+EXPLICIT = "That is forward Euler. In semi-implicit Euler z moves with the new velocity."
+DAMPED_TOO = "The new velocity moves z and contains the damper, so the damper also appears in the upper row."
+LATE = "The acceleration belongs to the start of the step: first the new velocity from the old z, then the new z."
 PULL = "The coupler pulls the mass towards the handle: K (x - z), not K (z - x)."
 NO_DAMPER = "The damper is missing: -b u, with the handle at rest."
-FEEDING = "The damper's sign is turned: it acts against u."
-SWAPPED = "Rows and columns are exchanged: a row gives one new value, from both old ones."
-DETERMINANT = "That is the determinant: it multiplies the square of the amplitude; take its root."
-UNDAMPED = "That is the growth without the damper: 1 - h b/m stands in the determinant, too."
-TRACE = "That is the trace, the sum of the eigenvalues; a pair's squared magnitude is its product, the determinant."
-ALONG = "The eigenvalues turn: 1 + j h omega without damping, whose magnitude is a root of squares, not 1 + h omega."
-LESS = "The factor itself is asked for, slightly above 1, not by how much it exceeds 1."
-NO_B = "That is the step without damping, 2/omega; the damper shortens it: 4 - 2 h b/m - h^2 K/m = 0."
-TWO_OMEGA = "That is 2 omega; without damping the step is 2/omega."
-OTHER_ROOT = "The equation for h has two roots; the other is negative, and this is its magnitude: mind b's sign."
+FEEDING = "The sign of the damper is wrong: it acts against u."
+SWAPPED = "Rows and columns are exchanged: each row gives one new value from both old ones."
+DETERMINANT = "That is the determinant, which multiplies the square of the amplitude. Take its square root."
+UNDAMPED = "That is the growth without the damper: 1 - h b/m also belongs to the determinant."
+TRACE = "That is the trace, the sum of the eigenvalues. The squared magnitude of a pair is its product, the determinant."
+ALONG = "The eigenvalues are complex: 1 + j h omega without damping. The magnitude is a root of squares, not 1 + h omega."
+LESS = "The exercise asks for the factor itself, slightly above 1, not for the excess over 1."
+NO_B = "That is the step without damping, 2/omega. The damper shortens it: 4 - 2 h b/m - h^2 K/m = 0."
+TWO_OMEGA = "That is 2 omega. Without damping the step is 2/omega."
+OTHER_ROOT = "The equation for h has two roots. The other root is negative, and this is its magnitude: check the sign of b."
 HALF = "Check the 2 in the denominator: h^2 K/m + 2 h b/m - 4 = 0 has the roots (-b +- sqrt(b^2 + 4 K m))/K."
-INVERSE = "That is the slope of log(h) against log(error); the order is how the error follows the step."
-STRAIGHT = "That is the slope of the errors themselves; a power law is a straight line in logarithms of both."
-CONSTANT = "That is log(C); numpy.polyfit gives the slope first."
-TWO_POINTS = "That is the slope between two of the points; fit the line to all of them."
-FULL = "That period is wholly used; only the part load of it may be."
-TIMES = "To leave some of the period free it must be longer: divide by load."
-NO_REST = "Sensor, motor and link need their cycles in every tick as well: add rest."
-RATE = "That is the rate in Hz; the period is its reciprocal."
+INVERSE = "That is the slope of log(h) against log(error). The order is the slope of log(error) against log(h)."
+STRAIGHT = "That is the slope of the errors themselves. A power law is a straight line if both axes are logarithmic."
+CONSTANT = "That is log(C): numpy.polyfit returns the slope first."
+TWO_POINTS = "That is the slope between two of the points. Fit the line to all of them."
+FULL = "That period is used completely. Only the fraction load of it may be used."
+TIMES = "To leave some of the period free, it must be longer: divide by load."
+NO_REST = "Sensor, motor and link also need their cycles in every tick: add rest."
+RATE = "That is the rate in Hz. The period is its reciprocal."
+FREE = "load is the fraction that is used, not the fraction that stays free."
 
 LAB = Lab(
     number="07",
@@ -62,7 +63,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="where does one step take z - x = 1, u = 0? That is one column of the matrix; and the other?",
+            hint="What does one step make of z - x = 1, u = 0? This is one column of the matrix; which start gives the other?",
             matters="The eigenvalues of this matrix describe every motion that the method can produce.",
         ),
         Exercise(
@@ -92,7 +93,7 @@ LAB = Lab(
                     slips={1.1: DETERMINANT, 2.0: TRACE, 0.04880884817015163: LESS, 1.316227766016838: ALONG},
                 ),
             ),
-            hint="what is the product of a complex pair, and what is the product of all eigenvalues of a matrix?",
+            hint="What is the product of a complex pair? What is the product of all eigenvalues of a matrix?",
             matters=(
                 "A method can generate energy that the equations of motion do not contain, and you feel it as a "
                 "growing oscillation."
@@ -122,7 +123,7 @@ LAB = Lab(
                     slips={0.015811388300841896: NO_B, 0.015936882399006133: OTHER_ROOT, 0.007843441199503066: HALF},
                 ),
             ),
-            hint="what are trace and determinant of your matrix? Of two roots, which one can be a step?",
+            hint="What are the trace and the determinant of your matrix? Which of the two roots can be a step?",
             matters="Stiff couplers and light bodies need short steps, so this limit bounds what a board can render.",
         ),
         Exercise(
@@ -148,7 +149,7 @@ LAB = Lab(
                 ),
             ),
             rtol=1e-5,
-            hint="numpy.polyfit(x, y, 1) fits a straight line; what are x and y here?",
+            hint="numpy.polyfit(x, y, 1) fits a straight line. What are x and y here?",
             matters=(
                 "The order shows how much a shorter step gains. A measured order that is too low reveals an error "
                 "elsewhere."
@@ -160,7 +161,7 @@ LAB = Lab(
             points=1,
             asks='"a", "b", "c" or "d"',
             options={
-                "a": "one step a period is too few",
+                "a": "one step per period is too few",
                 "b": "float32 has too few digits",
                 "c": "the coupler is too stiff",
                 "d": "it solves a problem whose handle stands still during each step, half a period late on average",
@@ -170,19 +171,19 @@ LAB = Lab(
                     {},
                     "d",
                     slips={
-                        "a": "Try substeps=4 in the cell below: the error stays what it was.",
-                        "b": "Try dtype='float64' in the cell below: the error stays; float32 is good to 1e-7.",
-                        "c": "The same coupler and the same RK4 are wrong by less than 0.1 % with hold='soh'.",
+                        "a": "Try substeps=4 in the cell below: the error does not change.",
+                        "b": "Try dtype='float64' in the cell below: the error does not change. float32 is accurate to 1e-7.",
+                        "c": "With hold='soh' the same coupler and the same RK4 have an error below 0.1 %.",
                     },
                 ),
             ),
-            hint="what changed between the two rows of RK4 in the table?",
+            hint="What is different between the two rows of RK4 in the table?",
             matters="A more accurate method cannot correct an error that is made elsewhere in the loop.",
         ),
         Exercise(
             "shortest_period",
             points=1,
-            asks="the shortest period [s] of which a tick takes at most the part load",
+            asks="the shortest period [s] of which a tick uses at most the fraction load",
             cases=(
                 Case(
                     {"cycles": 4570.0, "rest": 7000.0, "load": 0.5, "hz": 16e6},
@@ -198,13 +199,13 @@ LAB = Lab(
                         0.0013061875: FULL,
                         0.00104495: TIMES,
                         0.001085859375: NO_REST,
-                        0.0065309375: "load is the part that is used, not the part that stays free.",
+                        0.0065309375: FREE,
                     },
                 ),
             ),
-            hint="how many cycles has a period T, and how many of them may be used?",
+            hint="How many cycles does a period T have? How many of them may a tick use?",
             matters="The cost of a method limits the sampling rate, and the sampling rate limits the stiffness.",
         ),
-        Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
+        Exercise("discussion", kind="text", least_words=60, asks="your comparison, in 60 words or more"),
     ),
 )  # fmt: skip
