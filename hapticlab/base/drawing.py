@@ -124,12 +124,12 @@ def log_scales(axes):
         plain_log(axes, side)
 
 
-def plain_log(axes, side):
+def plain_log(axes, side, ends=None):
     """Make the x or y scale logarithmic, with plain numbers: at 1, 2 and 5 within two decades, else at powers of ten."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     axes.set(**{f"{side}scale": "log"})
-    axis, (low, high) = getattr(axes, f"{side}axis"), sorted(getattr(axes, f"get_{side}lim")())
+    axis, (low, high) = getattr(axes, f"{side}axis"), sorted(ends or getattr(axes, f"get_{side}lim")())
     axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,)))
     axis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axis.set_minor_formatter(NullFormatter())
@@ -138,7 +138,7 @@ def plain_log(axes, side):
 def scale_axis(axes, side, array):
     """Scale the x or y side as its values are spaced; a logarithmic one shows plain numbers."""
     if spacing(array) == "log":
-        plain_log(axes, side)
+        plain_log(axes, side, (array.min(), array.max()))
     else:
         axes.set(**{f"{side}scale": "linear"})
 

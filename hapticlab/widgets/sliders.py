@@ -1,10 +1,15 @@
 """Sliders above a picture that follows them; the only module that opens ipywidgets."""
 
-from ..errors import AnalysisError, EngineMissingError
+import html
+
+from ..base.drawing import DARK, PICTURE
+from ..errors import AnalysisError, EngineMissingError, HapticlabError
 from .browser_view import around
 from .latest_value import Latest
 
 STEPS = 60
+#: sliders in view; more fold away, so that the picture stays on the screen
+IN_VIEW = 2
 
 
 class FollowedPicture:
@@ -28,9 +33,14 @@ class FollowedPicture:
     def __init__(self, spans, cure):
         widgets = open_ipywidgets(cure)
         self.sliders = {name: _slider(widgets, name, *span) for name, span in spans.items()}
-        self.image, self.text = widgets.Image(format="png"), widgets.HTML()
+        # its own size: what is stretched is blurred
+        self.image, self.text = (
+            widgets.Image(format="png", layout={"width": "auto", "max_width": "100%", "align_self": "flex-start"}),
+            widgets.HTML(),
+        )
+        self.image.add_class(PICTURE)
         self._around = _around()
-        self.box = widgets.VBox([*self.sliders.values(), self.image, self.text, *self._around])
+        self.box = widgets.VBox([*_folded(widgets, [*self.sliders.values()]), self.image, self.text, *self._around])
         self._latest = Latest(self._draw, self._show_error)
         for slider in self.sliders.values():
             slider.observe(self._moved, names="value")
@@ -57,12 +67,13 @@ class FollowedPicture:
     def _draw(self, values):
         figure, sentence, words = self.drawn(values)
         self.image.value = figure._repr_png_()
-        self.text.value = sentence
+        self.text.value = f"{DARK}{html.escape(sentence)}"
         for beside in self._around:
             beside.words = words
 
     def _show_error(self, error):
-        self.text.value = f"<b>{type(error).__name__}</b>: {error}"
+        kind = "" if isinstance(error, HapticlabError) else f"{type(error).__name__}: "
+        self.text.value = f"{DARK}<b>no map:</b> {html.escape(f'{kind}{error}')}"
 
     def _repr_mimebundle_(self, **options):
         return self.box._repr_mimebundle_(**options)
@@ -85,8 +96,20 @@ def _around():
         return ()
 
 
+def _folded(widgets, sliders):
+    """The sliders in view, and one line that unfolds the others."""
+    shown, more = sliders[:IN_VIEW], sliders[IN_VIEW:]
+    if len(more) < 2:  # the line would take the place of the one
+        return sliders
+    names = ", ".join(slider.description for slider in more)
+    return [*shown, widgets.Accordion([widgets.VBox(more)], titles=(f"more sliders: {names}",))]
+
+
 def _slider(widgets, name, low, high, value, unit):
+    value = min(max(value, low), high)
+    steps = round((value - low) / (high - low) * STEPS)  # one of them is the value: a browser rounds to steps
+    step = (value - low) / steps if steps else (high - low) / STEPS
     return widgets.FloatSlider(
-        value=min(max(value, low), high), min=low, max=high, step=(high - low) / STEPS, description=f"{name} [{unit}]",
+        value=value, min=low, max=high, step=step, description=f"{name} [{unit}]",
         continuous_update=True, readout_format=".3g", style={"description_width": "9em"}, layout={"width": "32em"},
     )  # fmt: skip

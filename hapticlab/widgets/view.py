@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..analysis.walls.wall_map import OTHERS, WallMaps, changed
 from ..analysis.walls.wall_map_plot import WallMapPicture
 from ..errors import AnalysisError
@@ -41,7 +43,8 @@ def explore(
         In SI, of T, delay, m, b, coulomb, counts_per_metre, force_max, hand_m, hand_b, hand_k, hand_push: all that the
         paddle has and the map is not over. By default m, b, delay, and what the paddle has of coulomb and of a hand.
     law, over, **given
-        As for :func:`hapticlab.stability.wall_map`; the axes stay as they are at first.
+        As for :func:`hapticlab.stability.wall_map`; the axes stay as they are at first. Unless K is given, it goes from
+        below the passivity limit to beyond exact stability, so that both borders are in view.
 
     Returns
     -------
@@ -64,7 +67,25 @@ def explore(
     >>> view.wait(60), view.map.regions.shape, round(view.paddle.b, 2)
     (True, (10, 10), 0.4)
     """
-    return MapView(paddle, WallMaps(paddle, law=law, over=over, **given), sliders)
+    maps = WallMaps(paddle, law=law, over=over, **given)
+    if "K" not in given and (K := _around_borders(maps, paddle)) is not None:
+        maps = WallMaps(paddle, law=law, over=over, K=K, **given)
+    return MapView(paddle, maps, sliders)
+
+
+def _around_borders(maps, paddle):
+    """Stiffnesses from below the passivity limit of this paddle to beyond its exact stability; None where no theory is known."""
+    found = maps.of(paddle)
+    known = {name: _at_own(found, name, paddle, maps) for name in ("passivity", "stability") if name in found.limits}
+    ends = [K for K in known.values() if 0 < K < math.inf]
+    return np.geomspace(min(ends) / 2, 2.5 * max(ends), len(found.axes["K"])) if ends else None
+
+
+def _at_own(found, name, paddle, maps):
+    """Return a limit [N/m] where the other axis has what the paddle has; a map over B has the wall's own, 0 unless given."""
+    other = maps.over[1]
+    own = maps.B if other == "B" else value_of(paddle, other)
+    return float(np.interp(own, found.rows, found.limit(name)))
 
 
 class MapView(FollowedPicture):
@@ -73,6 +94,7 @@ class MapView(FollowedPicture):
     def __init__(self, paddle, maps, sliders=None):
         self.maps, self.first, self.paddle, self.map = maps, paddle, paddle, None
         self._picture = None
+        self._first = {}
         spans = _default_sliders(paddle, maps.over) if sliders is None else sliders
         if not isinstance(spans, Mapping):
             raise AnalysisError(f'sliders = {sliders!r}; needs a dict of name to (low, high), as sliders={{"b": (0.05, 0.5)}}')
@@ -89,7 +111,25 @@ class MapView(FollowedPicture):
             self._picture.figure.canvas.draw()  # lays it out, once
         self._picture.show(found)
         self.paddle, self.map = paddle, found
-        return self._picture.figure, f"{found.regions.size} contacts in {found.seconds:.2f} s", str(found).splitlines()[0]
+        words = self._limits_in_words(found, paddle)
+        return self._picture.figure, words, f"{str(found).splitlines()[0]}. {words}"
+
+    def _limits_in_words(self, found, paddle):
+        """What became of the limits, beside those of the paddle as it was given."""
+        other = self.maps.over[1]
+        own = self.maps.B if other == "B" else value_of(paddle, other)
+        said = []
+        for name, does in (("stability", "exact linear stability"), ("passivity", "passivity in any hand")):
+            if name in found.limits:
+                K = _at_own(found, name, paddle, self.maps)
+                before = self._first.setdefault(name, K)
+                said.append(
+                    f"{does} up to {K:.5g} N/m" + (f", at first {before:.5g} N/m" if f"{K:.5g}" != f"{before:.5g}" else "")
+                )
+        moves = found.share("chatters") + found.share("unusable")
+        said.append(f"{100 * moves:.0f} % of the simulated contacts on the map keep oscillating")
+        words = f"At {other} = {own:g} {found.units[other]}: {'; '.join(said)}."
+        return f"{words} {found.beyond_words[:1].upper()}{found.beyond_words[1:]}".strip() + ("." if found.beyond_words else "")
 
 
 def value_of(paddle, name):
@@ -105,7 +145,7 @@ def _default_sliders(paddle, over):
     for name in names:
         value = value_of(paddle, name)
         if value and name != "delay":
-            spans[name] = (value / 5, 3 * value)
+            spans[name] = (value / 4, 3 * value)
     return {name: spans[name] for name in names if name in spans}
 
 

@@ -83,7 +83,7 @@ def test_a_map_follows_its_slider(page):
     page.wait_for_function("(before) => document.querySelector('.widget-image').src !== before", arg=before)
     moved = "print(round(explored.paddle.b - explored.sliders['b'].value, 9), explored.paddle.b > 0.2)"
     eventually(page, moved, "0.0 True")
-    assert "contacts in" in page.locator(".widget-html").inner_text()
+    assert "exact linear stability up to" in page.locator(".widget-html").inner_text()
     page.wait_for_function("() => document.querySelector('.widget-image').alt.startsWith('wall map')")
     assert page.get_by_role("slider", name="b [N s/m]", exact=True).count() == 1
     for key in "dd":  # in JupyterLab: delete the cell

@@ -40,7 +40,9 @@ def test_the_map_follows_its_sliders(view):
     assert view.paddle.b == pytest.approx(0.3) and view.paddle.hand.b == pytest.approx(1.5)
     np.testing.assert_array_equal(view.map.regions, hl.stability.wall_map(moved, **SMALL).regions)
     assert view.image.value[:8] == b"\x89PNG\r\n\x1a\n" and view.image.value != first
-    assert "6 contacts in" in view.text.value
+    now, first = (hl.stability_limit(paddle).K for paddle in (moved, PADDLE))
+    assert f"exact linear stability up to {now:.5g} N/m, at first {first:.5g} N/m" in view.text.value
+    assert "passivity in any hand up to 600 N/m, at first 200 N/m" in view.text.value  # 2 b/T
 
 
 def test_a_slider_of_the_period_compiles_nothing():
@@ -79,11 +81,38 @@ def test_no_queue_piles_up(view):
 
 def test_what_goes_wrong_is_shown(view):
     def broken(paddle):
-        raise AnalysisError("this was given; that is needed")
+        raise AnalysisError("this was given; <that> is needed")
 
     view.maps.of = broken
     view.set(b=0.2)
-    assert view.wait(60) and "AnalysisError</b>: this was given" in view.text.value
+    assert view.wait(60) and "no map:</b> this was given; &lt;that&gt; is needed" in view.text.value
+
+
+def test_it_begins_at_the_paddles_own_values_on_a_step_of_each_slider(view):
+    for name, own in (("m", 0.05), ("b", 0.1), ("delay", 0.0), ("coulomb", 0.02), ("hand_m", 0.02), ("hand_b", 0.5)):
+        slider = view.sliders[name]
+        steps = (slider.value - slider.min) / slider.step
+        assert slider.value == own and steps == pytest.approx(round(steps), abs=1e-9)
+
+
+def test_more_than_three_sliders_fold(view):
+    shown, folded = view.box.children[:2], view.box.children[2]
+    assert [slider.description[:1] for slider in shown] == ["m", "b"]
+    (more,) = folded.children
+    assert len(more.children) == 4 and folded.selected_index is None and "coulomb [N]" in folded.titles[0]
+
+
+def test_the_default_map_shows_both_borders():
+    pytest.importorskip("ipywidgets")
+    held = replace(PADDLE, coulomb=0.0)
+    made = explore(held, sliders={"b": (0.05, 0.3)}, points=12, duration=0.1)
+    assert made.wait(60), made.text.value
+    K = made.map.axes["K"]
+    assert K[0] < 200 < hl.stability_limit(held).K < K[-1]  # 200 = 2 b/T
+    assert min(made.map.share(region) for region in ("passive", "stable")) > 0.02
+    assert made.map.share("chatters") + made.map.share("unusable") > 0.05
+    figure = made._picture.figure
+    assert 110 * figure.get_size_inches()[1] < 450
 
 
 def test_a_notebook_shows_it(view):

@@ -43,7 +43,8 @@ class WallMapPicture:
     ----------
     found : WallMap
     every : bool
-        Name every region and line in the legend, whether this map has it or not: another one may.
+        Name every region and line in the legend, whether this map has it or not: another one may. The legend then stands
+        beside the map, for room below a row of sliders.
     """
 
     def __init__(self, found, every=False):
@@ -52,7 +53,7 @@ class WallMapPicture:
         self.y_scale, y_label = axis_label(LABELS.get(up, up), found.units[up])
         self.start, self.edge = self.x_scale * K[0], K[-1]
         with house_style():
-            self.figure = new_figure(height=5.6)
+            self.figure = new_figure(height=3.7, width=8.4) if every else new_figure(height=5.6)
             axes = self.figure.subplots()
             x, y = self.x_scale * K, self.y_scale * other
             self.mesh = axes.pcolormesh(x, y, SHADES[found.regions.T], shading="nearest", rasterized=True)
@@ -64,8 +65,9 @@ class WallMapPicture:
             axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
             axes.grid(False)
             words = [found.about.splitlines()[0], f"colour: a simulated contact of {found.duration:g} s per cell; lines: theory"]
-            axes.set_title("\n".join([*words, *wrap(found.beyond_words, 84)]), fontsize="small")
-            self.figure.legend(fontsize="small", loc="outside lower center", ncols=2)
+            axes.set_title("\n".join([*words, *([] if every else wrap(found.beyond_words, 84))]), fontsize="small")
+            place = {"loc": "outside right upper"} if every else {"loc": "outside lower center", "ncols": 2}
+            self.figure.legend(fontsize="small", **place)
 
     def show(self, found):
         """Draw another map in place of the one shown; where its labels stay, they are not laid out again."""
