@@ -18,7 +18,7 @@ NEAR = 0.8
 CURE = "Record, flick the handle harder, release it while it moves, and let it come to rest"
 
 
-def coasting(log: Telemetry) -> Telemetry:
+def coasting(log: Telemetry | None) -> Telemetry:
     """The part of a recording in which the free handle coasts: from where it is fastest to the end, x rising from 0.
 
     Of a recording of ``hl.live`` it takes the longest part in which no hand holds the handle.
@@ -26,7 +26,7 @@ def coasting(log: Telemetry) -> Telemetry:
     Parameters
     ----------
     log : Telemetry
-        Of a handle that was flicked and released, or began with a speed.
+        Of a handle that was flicked and released, or began with a speed; ``view.log`` of a live view.
 
     Returns
     -------
@@ -46,6 +46,8 @@ def coasting(log: Telemetry) -> Telemetry:
     >>> round(1e3 * float(coast.x.max())), float(coast.x[0])
     (30, 0.0)
     """
+    if log is None:
+        raise AnalysisError(f"hl.identify.coasting: nothing was recorded yet. {CURE}")
     check_record(log, "hl.identify.coasting")
     log = _let_go(log)
     if len(log) <= OVER:

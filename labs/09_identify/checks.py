@@ -1,4 +1,4 @@
-"""Public checks of lab 09: numbers to compare with, letters of the choices, and what a typical slip gives."""
+"""Public checks of lab 09: numbers to compare with, letters of the choices, and the feedback to typical mistakes."""
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
@@ -15,11 +15,13 @@ COASTING = (
 TIMES = tuple(round(0.002 * i, 3) for i in range(len(COASTING)))
 
 TWICE = (
-    "This is what differentiating twice gives: each difference divides the counts by T, and the answer is the noise's. "
+    "That is the result of differentiating twice. Each difference divides the counts by T, so the noise decides the answer. "
     "Integrate the equation of motion instead."
 )
-OTHER_END = "That is the upper end. A promise has to hold for every b of the interval, and the least b promises least."
-DEVICE = "That is handle and hand together: take the handle's own share away."
+OTHER_END = (
+    "That is the upper end. A guarantee must hold for every b in the interval, and the smallest b guarantees the least stiffness."
+)
+DEVICE = "That is the constant of handle and hand together. Subtract that of the handle."
 
 LAB = Lab(
     number="09",
@@ -40,11 +42,11 @@ LAB = Lab(
                     unit="m/s",
                     slips={
                         (0.4, 0.2377872, 0.1114558, 0.01306881, -0.1697045): (
-                            "The handle turns round and speeds away backwards. Friction stops it and then holds it: from the "
-                            "stop on the speed is 0."
+                            "Your handle turns back and accelerates. Friction stops the handle and then holds it, so after the "
+                            "stop the speed is 0."
                         ),
                         (0.4, 0.3115203, 0.2426123, 0.1889466, 0.08925206): (
-                            "That is damping alone, which never stops a handle. Where is the Coulomb friction?"
+                            "That is damping alone, which never stops a handle. The Coulomb friction is missing."
                         ),
                         (
                             0.4,
@@ -52,9 +54,9 @@ LAB = Lab(
                             0.2333333,
                             0.15,
                             0.0,
-                        ): "That is friction alone: a straight line. Where is the damping b?",
+                        ): "That is friction alone, a straight line. The damping b is missing.",
                         (0.4, 0.3852534, 0.3737687, 0.3648244, 0.3482087): (
-                            "Your handle heads for +coulomb/b. With v' = -(b v + coulomb)/m, v' = 0 at a negative speed."
+                            "Your speed approaches +coulomb/b. With v' = -(b v + coulomb)/m, v' = 0 at a negative speed."
                         ),
                     },
                 ),
@@ -64,7 +66,9 @@ LAB = Lab(
                     unit="m/s",
                 ),
             ),
-            hint="Which speed does the handle head for, and how does its distance from there shrink? What happens on the way?",
+            hint=(
+                "Which speed does the handle approach, and how does the difference from this speed decay? What happens before?"
+            ),
             matters="Damping and dry friction slow a handle differently, so one coasting motion can separate them.",
         ),
         Exercise(
@@ -83,13 +87,13 @@ LAB = Lab(
                         ({"b/m": 3.22725529, "coulomb/m": 1.87218129}, TWICE),
                         (
                             {"b/m": 0.01000143},
-                            "The sum of positions is no integral yet: each trapezoid has the width t[1] - t[0].",
+                            "The sum of positions is not an integral yet, because each trapezoid has the width t[1] - t[0].",
                         ),
-                        ({"coulomb/m": 0.7495436}, "The column of gamma is -t^2/2, with its half."),
+                        ({"coulomb/m": 0.7495436}, "The factor 1/2 is missing. The column of gamma is -t^2/2."),
                     ],
                 ),
             ),
-            hint="What stands beside each of the four unknowns? And how large is the integral at the first time?",
+            hint="What multiplies each of the four unknowns? How large is the integral at the first time?",
             matters=(
                 "A fit of the integrated equation does not differentiate the counts, so the encoder disturbs the result far less."
             ),
@@ -103,32 +107,44 @@ LAB = Lab(
                     {"A": 0.2, "rising": 8.0, "falling": 5.0},
                     {"m": 0.030769231, "coulomb": 0.046153846},
                     slips=[
-                        ({"m": 0.025}, "A/rising takes the motor for all there is: friction helped it to brake."),
+                        (
+                            {"m": 0.025},
+                            (
+                                "A/rising assumes that the motor is the only force. While the handle rises, friction "
+                                "also slows it down."
+                            ),
+                        ),
                         (
                             {"m": 0.04},
-                            "A/falling forgets that friction held the handle back: the force was less than A.",
+                            (
+                                "A/falling assumes that the motor is the only force. While the handle falls, friction "
+                                "acts against the motor."
+                            ),
                         ),
                         (
                             {"coulomb": 0.3},
-                            "A (rising - falling)/2 is no force yet: it is m, not A, that turns m/s^2 into N.",
+                            "A (rising - falling)/2 is not a force. Multiply an acceleration by m, not by A, to get newtons.",
                         ),
                     ],
                 ),
                 Case({"A": 0.3, "rising": 10.0, "falling": 10.0}, {"m": 0.03, "coulomb": 0.0}),
             ),
-            hint="Friction changes sides. In which combination of the two slopes does it drop out, and in which the motor?",
+            hint=(
+                "Friction changes sides. In which combination of the two accelerations does friction cancel, and in "
+                "which the motor?"
+            ),
             matters="A known force gives the scale. Without it a recording shows only ratios such as b/m.",
         ),
         Exercise(
             "what_95_means",
             kind="choice",
             points=1,
-            asks="what the interval says: a, b, c or d",
+            asks="what the interval states: a, b, c or d",
             options={
                 "a": "b is inside with a probability of 95 %",
                 "b": "95 % of the samples lie between the ends",
                 "c": "b is known to 5 %",
-                "d": "about 95 % of the intervals of many repetitions hold b",
+                "d": "about 95 % of the intervals of many repetitions contain b",
             },
             cases=(
                 Case(
@@ -136,21 +152,24 @@ LAB = Lab(
                     "d",
                     slips={
                         "a": (
-                            "b does not move about: it is inside this interval or it is not. What is random is the "
-                            "interval; look at the figure of 100 sensors again."
+                            "b does not vary: it is inside this interval, or it is not. The interval is random. Look at the "
+                            "figure of 100 sensors again."
                         ),
-                        "b": "The interval is about b, in N s/m. The samples are positions, in m.",
-                        "c": "95 % says how often the method holds the truth; the interval's width says how well b is known.",
+                        "b": "The interval is a statement about b, in N s/m. The samples are positions, in m.",
+                        "c": (
+                            "95 % states how often the method contains the true value. The width of the interval "
+                            "states how well b is known."
+                        ),
                     },
                 ),
             ),
-            hint="What differs from bar to bar in the figure, and what does not?",
+            hint="What differs from bar to bar in the figure, and what stays the same?",
             matters="A limit on stiffness is only as certain as the damping from which you computed it.",
         ),
         Exercise(
             "promised_stiffness",
             points=1,
-            asks="the largest K [N/m] that Eq. (23.10) promises for every b between b_low and b_high",
+            asks="the largest K [N/m] that Eq. (23.10) guarantees for every b between b_low and b_high",
             cases=(
                 Case(
                     {"b_low": 0.14, "b_high": 0.16, "T": 1e-3, "B": 0.0},
@@ -158,7 +177,7 @@ LAB = Lab(
                     unit="N/m",
                     slips={
                         320.0: OTHER_END,
-                        300.0: "That is the middle of the interval: half the time too much was promised.",
+                        300.0: "That is the middle of the interval. In half of all cases the true b guarantees less.",
                     },
                 ),
                 Case(
@@ -166,8 +185,8 @@ LAB = Lab(
                     180.0,
                     unit="N/m",
                     slips={
-                        380.0: "A negative B does not add to the damping: in Eq. (23.10) it stands as |B|.",
-                        280.0: "Where is B? Eq. (23.10) reads b > KT/2 + |B|.",
+                        380.0: "A negative B does not add to the damping. Eq. (23.10) contains |B|.",
+                        280.0: "B is missing. Eq. (23.10) is b > KT/2 + |B|.",
                         220.0: OTHER_END,
                     },
                 ),
@@ -176,12 +195,15 @@ LAB = Lab(
                     0.0,
                     unit="N/m",
                     slips={
-                        -20.0: "No stiffness is promised here, and a negative one is no answer: give 0.",
+                        -20.0: "No stiffness is guaranteed here, and a negative stiffness is not an answer. Return 0.",
                         20.0: OTHER_END,
                     },
                 ),
             ),
-            hint="Which b of the interval do you dare to put in? What does B cost, whatever its sign? And where nothing is left?",
+            hint=(
+                "Which b in the interval is the safe choice, and how much damping does B need, whatever its sign? "
+                "What if nothing remains?"
+            ),
             matters=(
                 "A guarantee must hold for every value that the measurement allows, so a better measurement "
                 "permits a stiffer wall."
@@ -198,20 +220,26 @@ LAB = Lab(
                     slips=[
                         ({"m": 0.05}, DEVICE),
                         ({"b": 1.1}, DEVICE),
-                        ({"b": 0.45}, "sigma is (b + b_h)/(2 M): where is the 2?"),
+                        ({"b": 0.45}, "A factor 2 is missing: sigma = (b + b_h)/(2 M)."),
                         (
                             {"b": 0.34},
-                            "The damper slows handle and hand together: it is M, not the hand's own mass, that swings.",
+                            "The damper slows handle and hand together, so use M and not the mass of the hand.",
                         ),
                         (
                             {"k": 192.2},
-                            "M omega^2 is a little too soft: the damper slows the swing, omega^2 = k_h/M - sigma^2.",
+                            (
+                                "M omega^2 is slightly too small, because the damper lowers the frequency: omega^2 = "
+                                "k_h/M - sigma^2."
+                            ),
                         ),
-                        ({"k": 79.3}, "The spring swings handle and hand together: M, not the hand's own mass."),
+                        ({"k": 79.3}, "The spring moves handle and hand together, so use M and not the mass of the hand."),
                     ],
                 ),
             ),
-            hint="What swings, and what slows it: the hand alone, or hand and handle? Whose is the spring?",
+            hint=(
+                "Which mass oscillates, and which dampers slow it: of the hand, or of hand and handle? To which of "
+                "them does the spring belong?"
+            ),
             matters="Your hand is part of the loop, so its constants decide which walls are stable for you.",
         ),
         Exercise(
@@ -225,19 +253,24 @@ LAB = Lab(
                     {},
                     "a",
                     slips={
-                        "c": "Narrow is not right: at 100 ms the fit itself says that it does not explain the record.",
+                        "c": (
+                            "A narrow interval can be wrong. At 100 ms the fit itself says that it does not explain "
+                            "the recording."
+                        ),
                         "b": (
-                            "The fit explains the record, and is wrong: look where its interval lies, and where k is. What looks "
-                            "like noise in the remains is no proof; you know from elsewhere that the reflex began at 40 ms."
+                            "The fit explains the recording and is still wrong: compare its interval with the "
+                            "true k. Residuals that "
+                            "look like noise are no proof. You know from another source that the reflex begins at 40 ms."
                         ),
                         "d": (
-                            "Before the reflex the model is right at any length, and each sample more tells more: at 20 ms the "
-                            "interval for k is some ten times as wide as at 40 ms."
+                            "Before the reflex the model is right for every window, and each further sample adds "
+                            "information. At "
+                            "20 ms the interval for k is about ten times as wide as at 40 ms."
                         ),
                     },
                 ),
             ),
-            hint="Until when is the hand what the model says? And up to there, what does a longer record give?",
+            hint="Until when does the model describe the hand? Until then, what does a longer recording improve?",
             matters="The choice of the data is part of the measurement: another window gives another hand.",
         ),
         Exercise("discussion", kind="text", least_words=80, asks="your discussion, 80 words or more"),
