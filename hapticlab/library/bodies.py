@@ -9,7 +9,6 @@ import sympy as sp
 from ..scene.laws.chapter_laws import virtual_coupler
 from ..scene.notation.symbols import coordinate, n, parameters, t, x
 from ..scene.scene import Scene
-from .sketch import Sketch, clearance
 
 
 def coupler(z):
@@ -50,18 +49,6 @@ def mass_spring_damper() -> Scene:
     return Scene(force=F_c, eom=[sp.Eq(m * z.diff(t, 2), F_c - k * z - b * z.diff(t))], watch=[z], name="mass-spring-damper")
 
 
-def draw_mass_spring_damper(axes, *, x=0.015, z=0.01, **_):
-    """Draw the mass to the right of the handle, its spring and damper to the wall."""
-    s, origin = Sketch(axes, -0.075, 0.135, -0.032, 0.032), 0.05 + clearance(x, z)
-    left, wall, half = z + origin, origin + 0.065, 9 * s.u
-    s.handle(x)
-    s.pair((x, 0), (left - half, 0))
-    s.block((left, 0), 18, 12, "$m$")
-    s.pair((left + half, 0), (wall, 0), "$k,\\ b$")
-    s.ground((wall, 9 * s.u), (wall, -9 * s.u), depth=-1.5)
-    s.coordinate("$z$", z, -11 * s.u, origin=origin)
-
-
 def two_masses() -> Scene:
     """Two masses joined by a spring, the first behind a virtual coupler: m_1 z_1'' = F_c - F_k, m_2 z_2'' = F_k.
 
@@ -90,19 +77,6 @@ def two_masses() -> Scene:
     F_c, F_k = coupler(z_1), k * (z_1 - z_2) + b * (z_1.diff(t) - z_2.diff(t))
     eom = [sp.Eq(m_1 * z_1.diff(t, 2), F_c - F_k), sp.Eq(m_2 * z_2.diff(t, 2), F_k)]
     return Scene(force=F_c, eom=eom, watch=[z_1, z_2], name="two masses")
-
-
-def draw_two_masses(axes, *, x=0.012, z_1=0.008, z_2=0.015, **_):
-    """Draw both masses in a row to the right of the handle."""
-    s, origin = Sketch(axes, -0.055, 0.155, -0.032, 0.032), 0.052 + clearance(x, z_1)
-    first, second, half = z_1 + origin, z_2 + origin + 0.06, 7 * s.u
-    s.handle(x)
-    s.pair((x, 0), (first - half, 0))
-    s.block((first, 0), 14, 12, "$m_1$")
-    s.pair((first + half, 0), (second - half, 0), "$k,\\ b$")
-    s.block((second, 0), 14, 12, "$m_2$")
-    s.coordinate("$z_1$", z_1, -11 * s.u, origin=origin)
-    s.coordinate("$z_2$", z_2, -11 * s.u, origin=origin + 0.06)
 
 
 def tuned_absorber() -> Scene:
@@ -136,20 +110,3 @@ def tuned_absorber() -> Scene:
     F_1 = F_0 * sp.sin(Omega * t) - k_1 * z_1 - b_1 * z_1.diff(t)
     eom = [sp.Eq(m_1 * z_1.diff(t, 2), F_1 - F_2 + F_c), sp.Eq(m_2 * z_2.diff(t, 2), F_2)]
     return Scene(force=F_c, eom=eom, watch=[z_1, z_2], name="tuned absorber")
-
-
-def draw_tuned_absorber(axes, *, x=0.0, z_1=0.0, z_2=0.008, **_):
-    """Draw the machine on its springs beside the handle, the absorber on the machine."""
-    s, origin = Sketch(axes, -0.07, 0.165, -0.04, 0.06), 0.055 + clearance(x, z_1)
-    u, main, small, wall = s.u, z_1 + origin, z_2 + origin + 0.065, origin + 0.08
-    s.handle(x)
-    s.pair((x, 0), (main - 8 * u, 0))
-    s.block((main, 4 * u), 16, 22, "$m_1$")
-    s.arrow((main, 23 * u), (main + 9 * u, 23 * u), r"$F_0\,\sin\,\Omega t$", right=8.5, up=0)
-    s.line((main, 15 * u), (main, 23 * u), width=1.0)
-    s.pair((main + 8 * u, 10 * u), (small - 5 * u, 10 * u), "$k_2,\\ b_2$")
-    s.block((small, 10 * u), 10, 9, "$m_2$")
-    s.pair((main + 8 * u, -3.5 * u), (wall, -3.5 * u), "$k_1,\\ b_1$")
-    s.ground((wall, 3 * u), (wall, -10 * u), depth=-1.5)
-    s.coordinate("$z_1$", z_1, -11 * u, origin=origin)
-    s.coordinate("$z_2$", z_2, 19 * u, origin=origin + 0.065)

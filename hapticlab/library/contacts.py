@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..scene.contact.contact import Contact, friction
 from ..scene.contact.instant_laws import impulse
 from ..scene.mechanics.lagrange import lagrange
 from ..scene.notation.symbols import coordinate, n, parameters, t, x
 from ..scene.scene import Scene
 from .bodies import coupler
-from .sketch import SOFT, Sketch, clearance
 
 if TYPE_CHECKING:
     from typing import Any
@@ -57,26 +54,6 @@ def ball_on_the_paddle(contact_law: Any = None) -> Scene:
     return Scene(force=F_c, eom=[motion], watch=[y, z], name="ball on the paddle")
 
 
-def draw_ball_on_the_paddle(axes, *, x=-0.01, z=-0.004, y=0.055, **_):
-    """Draw the handle below, moving up and down, the plate on its coupler, the ball above."""
-    s = Sketch(axes, -0.09, 0.09, -0.075, 0.125)
-    u, plate = s.u, z + 0.04
-    s.area([(-6 * u, x - 2 * u), (6 * u, x - 2 * u), (6 * u, x + 2 * u), (-6 * u, x + 2 * u)], "#c1440e", zorder=6)
-    s.text((0, x), "handle", up=-6, color="#c1440e")
-    s.spring((-2.5 * u, x + 2 * u), (-2.5 * u, plate - 2 * u), "$K$", up=0, right=-4, coils=5, height=1.2)
-    s.damper((2.5 * u, x + 2 * u), (2.5 * u, plate - 2 * u), "$b_c$", up=0, right=4.5, height=1.2)
-    s.block((0, plate), 26, 4, "$M$")
-    s.disc((0, y + 0.04 + 6 * u), 4 * u)
-    s.text((0, y + 0.04 + 6 * u), "$m$")
-    for name, value, place, origin in (("$x$", x, -20, 0.0), ("$z$", z, 20, 0.04), ("$y$", y, 27, 0.04)):
-        at, end = place * u, origin + value
-        s.line((at - 1.5 * u, origin), (at + 1.5 * u, origin), width=1.0)
-        if abs(value) > u:
-            s.arrow((at, origin), (at, end))
-        s.text((at, end), name, up=2.6 if value >= 0 else -2.6)
-    s.arrow((-30 * u, 0.1), (-30 * u, 0.08), "$g$")
-
-
 def stick_slip(stick_speed: Number | None = None) -> Scene:
     """Stick-slip: a block on a rough floor, pulled by the handle through the coupler's spring.
 
@@ -115,19 +92,3 @@ def stick_slip(stick_speed: Number | None = None) -> Scene:
         rough = friction(slip=z.diff(t), coulomb=F_c, stick_speed=v_s)
     motion = lagrange(m * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[rough])
     return Scene(force=F, eom=[motion], watch=[z], name="stick-slip")
-
-
-def draw_stick_slip(axes, *, x=0.022, z=0.012, **_):
-    """Draw the block on its rough floor beside the handle."""
-    s, origin = Sketch(axes, -0.075, 0.135, -0.034, 0.03), 0.07 + clearance(x, z)
-    u, place, floor = s.u, z + origin, -5 * s.u
-    end = max(0.13, place + 14 * u)
-    s.pair((x, 0), (place - 8 * u, 0))
-    s.handle(x, below=11)
-    s.block((place, 0), 16, 10, "$m$")
-    rough = np.arange(0.03, end, 0.6 * u)
-    s.line(*np.column_stack([rough, floor - 0.25 * u * (1 + (-1.0) ** np.arange(len(rough)))]), width=1.0, color=SOFT)
-    s.ground((0.03, floor - 0.5 * u), (end, floor - 0.5 * u))
-    s.arrow((place + 12 * u, floor + 1.5 * u), (place + 3 * u, floor + 1.5 * u))
-    s.text((place + 12 * u, floor + 1.5 * u), "$F_f$", right=2.6, up=0.6)
-    s.coordinate("$z$", z, -11 * u, origin=origin)

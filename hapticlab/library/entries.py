@@ -23,8 +23,8 @@ class Entry:
     ----------
     scene : callable -> Scene
         ``hl.library.<name>``.
-    draw : callable (axes, *, x, ...)
-        Draws the mechanism in a state.
+    draw : callable (axes, *, x, ...) or None
+        Draws the mechanism in a state; None where its equations tell all that is to be drawn.
     b : float
         Damping at the handle [N s/m] with which it is passive for any hand with ``options``: K T/2 + b_c of its coupler and
         a little for the velocity that is estimated, or T/2 times the steepest slope of its force. A longer T needs more.
@@ -37,7 +37,7 @@ class Entry:
     """
 
     scene: Callable[..., Scene]
-    draw: Callable[..., None]
+    draw: Callable[..., None] | None
     b: float
     options: dict = field(default_factory=lambda: {"T": NOMINAL.T})
     uno: dict | None = None
@@ -94,19 +94,19 @@ def _uno(method, rate):
 
 SEMI = "semi_implicit_euler"
 CATALOGUE = Catalogue((
-    Entry(bodies.mass_spring_damper, bodies.draw_mass_spring_damper, 0.21, uno=_uno(SEMI, 800)),
-    Entry(bodies.two_masses, bodies.draw_two_masses, 0.21, uno=_uno(SEMI, 800)),
-    Entry(bodies.tuned_absorber, bodies.draw_tuned_absorber, 0.21, uno=_uno(SEMI, 400)),
+    Entry(bodies.mass_spring_damper, None, 0.21, uno=_uno(SEMI, 800)),
+    Entry(bodies.two_masses, None, 0.21, uno=_uno(SEMI, 800)),
+    Entry(bodies.tuned_absorber, None, 0.21, uno=_uno(SEMI, 400)),
     Entry(
-        pendulums.pendulum_on_the_handle, pendulums.draw_pendulum_on_the_handle, 0.21, uno=_uno(SEMI, 500), stored=0.0033
+        pendulums.pendulum_on_the_handle, None, 0.21, uno=_uno(SEMI, 500), stored=0.0033
     ),
-    Entry(pendulums.cart_pole, pendulums.draw_cart_pole, 0.21, uno=_uno(SEMI, 500), stored=0.2944),
+    Entry(pendulums.cart_pole, None, 0.21, uno=_uno(SEMI, 500), stored=0.2944),
     Entry(mechanisms.gears, mechanisms.draw_gears, 0.21, uno=_uno(SEMI, 500)),
     Entry(mechanisms.slider_crank, mechanisms.draw_slider_crank, 0.21, uno=_uno(SEMI, 400)),
     Entry(mechanisms.four_bar, mechanisms.draw_four_bar, 0.21, uno=_uno(SEMI, 250) | {"hold": "foh"}),
     Entry(mechanisms.rolling, mechanisms.draw_rolling, 0.21, uno=_uno(SEMI, 500)),
-    Entry(contacts.ball_on_the_paddle, contacts.draw_ball_on_the_paddle, 0.21, stored=0.0236),
-    Entry(contacts.stick_slip, contacts.draw_stick_slip, 0.21),
+    Entry(contacts.ball_on_the_paddle, None, 0.21, stored=0.0236),
+    Entry(contacts.stick_slip, None, 0.21),
     Entry(surfaces.detents, surfaces.draw_detents, 0.19, uno=_uno(SEMI, 1000)),
     Entry(surfaces.texture, surfaces.draw_texture, 0.28, uno=_uno(SEMI, 800)),
     Entry(surfaces.virtual_fixture, surfaces.draw_virtual_fixture, 0.2, uno=_uno(SEMI, 1000)),

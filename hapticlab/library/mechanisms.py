@@ -11,6 +11,9 @@ from ..scene.scene import Scene
 from .bodies import coupler
 from .sketch import SOFT, Sketch, clearance
 
+#: half the depth of a gear's teeth [m]
+TOOTH = 0.0011
+
 
 def gears() -> Scene:
     """Gear train: a rack turns a pinion, z = r phi; on its shaft N_1 teeth drive N_2 teeth with a flywheel.
@@ -47,36 +50,29 @@ def gears() -> Scene:
 
 def draw_gears(axes, *, x=0.012, phi=0.4, r=0.02, N_1=60.0, N_2=20.0, **_):
     """Draw the rack under the pinion, the gears at their ratio, the flywheel on the second shaft."""
-    big = max(1.3 * r, 0.036 * min(1, N_1 / N_2))
+    big = max(1.3 * r, 0.028 * min(1, N_1 / N_2))
     small = big * N_2 / N_1
-    s = Sketch(axes, -0.075, 0.175, -0.036, 0.068)
+    s = Sketch(axes, -0.105, 0.22, -0.031, 0.053)
     u, z = s.u, r * phi
     rack = z + 0.04 + clearance(x, z)
     centre = np.array([max(0.095 + clearance(x, z), rack + big + 2 * u), r])
     other = centre + [big + small, 0]
-    s.pair((x, 0), (rack, 0))
-    s.handle(x)
+    s.pair((x, 0), (rack, 0), carries="F")
+    s.handle(x, below=7.8)
     s.line((rack, 0), (max(rack + 0.11, centre[0] + big), 0), width=3.0, zorder=7)
     turn = -np.pi / 2 + phi
-    _gear(s, centre, big, int(N_1), phi, "#dbe6f0")
-    _gear(s, other, small, int(N_2), np.pi * (1 + 1 / N_2) - N_1 / N_2 * phi, "#f4f4f4")
+    s.gear(centre, big, int(N_1), phi, TOOTH)
+    s.gear(other, small, int(N_2), np.pi * (1 + 1 / N_2) - N_1 / N_2 * phi, TOOTH, color="#f4f4f4")
     s.disc(centre, r, turn, color="#f4f4f4", zorder=5)
     s.line(centre, centre + r * np.array([np.cos(2.4), np.sin(2.4)]), width=0.8, color=SOFT, zorder=6)
-    s.text(centre, "$r$", right=-5, up=1.5)
+    s.text(centre, "$r$", right=1.8, up=2.6)
     s.pin(centre)
     s.pin(other)
-    s.text(centre, "$N_1,\\ J_1$", up=0.5 * (r + big) / u if big - r > 4 * u else big / u + 4.5)
-    s.text(other, "$N_2,\\ J_2$", up=small / u + 4.5)
+    s.text(centre, "$N_1,\\ J_1$", up=0.5 * (r + big) / u)
+    s.text(other, "$N_2,\\ J_2$", up=small / u + 2.6)
     s.angle(centre, big / u + 3.6, 2.3, 2.9, r"$\varphi$")
     s.angle(other, small / u + 4.2, 0.5, -0.5, r"$\varphi_2$")
-    s.coordinate("$z$", z, min(-12 * u, r - small - 3 * u), origin=centre[0])
-
-
-def _gear(s, centre, radius, teeth, turn, color):
-    """Draw a gear whose tooth 0 points along ``turn``."""
-    at = np.linspace(0, 2 * np.pi, 12 * teeth + 1)
-    rim = radius + 0.0011 * np.clip(3 * np.cos(teeth * (at - turn)), -1, 1)
-    s.area(np.asarray(centre) + rim[:, None] * np.column_stack([np.cos(at), np.sin(at)]), color=color)
+    s.coordinate("$z$", z, -7.8 * u, origin=centre[0])
 
 
 def slider_crank() -> Scene:
@@ -112,15 +108,15 @@ def slider_crank() -> Scene:
 
 def draw_slider_crank(axes, *, x=0.012, theta=0.9, r=0.03, l=0.09, **_):
     """Draw the crank on the right, the slider between it and the handle."""
-    s = Sketch(axes, -0.075, 0.24, -0.052, 0.058)
+    s = Sketch(axes, -0.085, 0.235, -0.043, 0.041)
     u, slider = s.u, l + r * np.cos(theta) - np.sqrt(l**2 - (r * np.sin(theta)) ** 2)
     origin = 0.065 + clearance(x, slider)
     place, centre = np.array([slider + origin, 0.0]), np.array([origin + l, 0.0])
     pin = centre + r * np.array([np.cos(theta), np.sin(theta)])
     s.disc(centre, 1.3 * r, theta, zorder=1.5)
-    s.ground((origin - r - 5 * u, -5.5 * u), (origin + r + 5 * u, -5.5 * u))
-    s.pair((x, 0), (place[0] - 5 * u, 0))
-    s.handle(x, below=12)
+    s.ground((origin - r, -5.5 * u), (origin + r + 4 * u, -5.5 * u))
+    s.pair((x, 0), (place[0] - 5 * u, 0), carries="F")
+    s.handle(x, below=10.5)
     s.block(place, 10, 11)
     s.text(place, "$m$", right=-2.5)
     s.rod(place, pin, "$l$", up=3)
@@ -130,7 +126,7 @@ def draw_slider_crank(axes, *, x=0.012, theta=0.9, r=0.03, l=0.09, **_):
     for at in (place, pin, centre):
         s.pin(at)
     s.angle(centre, 15.5, 0, theta, r"$\theta$")
-    s.coordinate("$s$", slider, -12 * u, origin=origin)
+    s.coordinate("$s$", slider, -10.5 * u, origin=origin)
 
 
 def four_bar() -> Scene:
@@ -177,7 +173,7 @@ def four_bar() -> Scene:
 
 def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, rho=0.03, theta_0=1.2, **_):
     """Draw the rack under the crank's pulley, the linkage on it."""
-    s = Sketch(axes, -0.075, 0.175, -0.03, 0.078)
+    s = Sketch(axes, -0.175, 0.29, -0.044, 0.077)
     u, z = s.u, rho * (theta - theta_0)
     rack = z + 0.04 + clearance(x, z)
     ground = np.array([max(0.085 + clearance(x, z), rack + rho + 2 * u), rho])
@@ -190,12 +186,12 @@ def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, r
     joint = rocker + c * np.array([np.cos(psi), np.sin(psi)])
     beta = np.angle(complex(*(joint - crank)))
     beside = [np.array([-np.sin(angle), np.cos(angle)]) for angle in (theta, beta, psi)]
-    s.pair((x, 0), (rack, 0))
-    s.handle(x)
+    s.pair((x, 0), (rack, 0), carries="F")
+    s.handle(x, below=7.8)
     s.line((rack, 0), (max(rack + 0.09, ground[0] + rho), 0), width=3.0)
     s.disc(ground, rho, theta - np.pi / 2 - theta_0, color="#f4f4f4")
     s.line(ground, rocker, width=0.8, color=SOFT, linestyle="--", zorder=3.5)
-    s.text((ground + rocker) / 2, "$d$", right=4, up=-2.4)
+    s.text((ground + rocker) / 2, "$d$", right=2.3, up=-2.4)
     s.rod(ground, crank, width=3.5)
     s.text((ground + crank) / 2 + 2.6 * u * beside[0], "$a$")
     s.rod(crank, joint)
@@ -210,9 +206,9 @@ def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, r
     s.angle(ground, 6, 0, theta, r"$\theta$")
     s.angle(crank, 9, 0, beta, r"$\beta$")
     s.line(crank, crank + [11 * u, 0], width=0.8, color=SOFT, linestyle="--")
-    s.angle(rocker, 6, 0, psi, r"$\psi$")
+    s.angle(rocker, 4, 0, psi, r"$\psi$")
     s.line(rocker, rocker + [9 * u, 0], width=0.8, color=SOFT, linestyle="--")
-    s.coordinate("$z$", z, -8 * u, origin=ground[0])
+    s.coordinate("$z$", z, -4 * u, origin=ground[0])
 
 
 def rolling() -> Scene:
@@ -250,25 +246,26 @@ def rolling() -> Scene:
 
 def draw_rolling(axes, *, x=0.012, z=0.008, u=0.012, r=0.015, alpha=0.0, **_):
     """Draw the plate on rollers beside the handle, the disc on it, all along the slope."""
-    s, origin = Sketch(axes, -0.075, 0.165, -0.034, 0.064, tilt=alpha), 0.09 + clearance(x, z)
+    s, origin = Sketch(axes, -0.085, 0.195, -0.028, 0.0445, tilt=alpha), 0.09 + clearance(x, z)
     plate = np.array([z + origin, 0.0])
     top = 2.5 * s.u
     centre = plate + [u, top + r]
-    s.pair((x, 0), (plate[0] - 22 * s.u, 0))
-    s.handle(x, below=10.5)
-    s.block(plate, 44, 5, "$M$")
+    s.pair((x, 0), (plate[0] - 22 * s.u, 0), carries="F")
+    s.handle(x, below=8.7)
+    s.block(plate, 44, 5, name="z")
+    s.text(plate, "$M$", right=-12)
     for side in (-14, 0, 14):
         s.disc(plate + [side * s.u, -4 * s.u], 1.5 * s.u)
-    start, end = min(0.03, plate[0] - 20 * s.u), max(origin + 0.065, plate[0] + 20 * s.u)
+    start, end = plate[0] - 20 * s.u, plate[0] + 20 * s.u
     s.ground((start, -5.5 * s.u), (end, -5.5 * s.u))
     if alpha:
         low, level = (start, 0) if alpha > 0 else (end, np.pi)
         foot, level_to = np.array([low, -5.5 * s.u]), level - alpha
         s.line(foot, foot + 16 * s.u * np.array([np.cos(level_to), np.sin(level_to)]), width=0.8, color=SOFT, linestyle="--")
         s.angle(foot, 12, level_to, level, r"$\alpha$")
-    s.disc(centre, r, -np.pi / 2 - u / r)
+    s.disc(centre, r, -np.pi / 2 - u / r, name="u")
     s.text(centre, "$m$", up=2.5)
     s.text(centre, "$r$", right=-3 if u >= 0 else 3, up=-1.5)
     s.angle(centre, r / s.u + 2, np.pi / 2 + 0.6, np.pi / 2 - 0.6, r"$\varphi$")
-    s.coordinate("$z$", z, -10.5 * s.u, origin=origin)
-    s.coordinate("$u$", u, top + 2 * r + 8.5 * s.u, origin=plate[0])
+    s.coordinate("$z$", z, -8.7 * s.u, origin=origin)
+    s.coordinate("$u$", u, 0.0, origin=plate[0])

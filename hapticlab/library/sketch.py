@@ -1,17 +1,21 @@
-"""Schematics of mechanisms, drawn on matplotlib Axes that are given: this module only calls their methods.
+"""Schematics of mechanisms, drawn on a display list.
 
 Lengths are in metres, to scale where the mechanism has them. Whatever stands for a part without a size (a spring, a pin, the
-handle) is measured in ``u``, a hundredth of the picture's width.
+handle) is measured in ``u``, a hundredth of the picture's width: some 8 pixels in a notebook.
 """
 
 import math
-import re
-from functools import cache, lru_cache
+from functools import cache
 
 import numpy as np
 
-INK, SOFT, HANDLE, BODY = "#000000", "#8a8a8a", "#c1440e", "#dbe6f0"
-TEXT = {"fontsize": 11, "color": INK, "zorder": 9, "clip_on": False}
+from .display_list import DASHES
+
+INK, SOFT, HANDLE, BODY = "#000000", "#8a8a8a", "#3f5563", "#dbe6f0"
+#: of the handle in u: half the height of its face, its thickness, height and radius of the knob
+FACE, THICK, KNOB, ROUND = 5.5, 1.4, 8.3, 2.2
+#: the way of the motor's largest force [u]
+FULL = 18.0
 
 
 class Sketch:
@@ -19,57 +23,49 @@ class Sketch:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
+    axes : DisplayList
     left, right, bottom, top : float
-        What the picture shows [m]; more where the state that is drawn reaches farther.
+        What the picture shows [m].
     tilt : float
         Angle by which everything but the letters is turned about the origin [rad, counterclockwise].
     """
 
     def __init__(self, axes, left, right, bottom, top, tilt=0.0):
-        self.axes, self.u = axes, (right - left) / 100
+        self.axes, self.u = axes, max((right - left) / 100, (top - bottom) / 26)
         self._turn = (math.cos(tilt), math.sin(tilt)) if tilt else None
         self.left, self.right, self.bottom, self.top = left, right, bottom, top
-        self._shown = (left, right), (bottom, top)
-        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-        axes.axis("off")
+        # what is shown along the handle's way, and across it
+        upright = self._turn is not None and abs(self._turn[1]) > 0.9
+        self.ends, self.across = ((bottom, top), (-right, -left)) if upright else ((left, right), (bottom, top))
+        axes.set(xlim=(left, right), ylim=(bottom, top))
 
-    def place(self, points, wide=1.0, high=1.0):
-        """The xs and ys of points in the picture, which grows to show them with a margin in u."""
-        placed = [(float(x), float(y)) for x, y in points]  # few points: plain floats are faster than arrays
-        if self._turn:
-            c, s = self._turn
-            placed = [(c * x - s * y, s * x + c * y) for x, y in placed]
-        xs, ys = zip(*placed, strict=True)
-        if math.isfinite(sum(xs) + sum(ys)):
-            self._show(min(xs) - wide * self.u, max(xs) + wide * self.u, min(ys) - high * self.u, max(ys) + high * self.u)
-        return xs, ys
+    def place(self, points):
+        """The points in the picture, turned where it is tilted."""
+        if not self._turn:
+            return points
+        c, s = self._turn
+        return [(c * x - s * y, s * x + c * y) for x, y in points]
 
-    def _show(self, left, right, bottom, top):
-        (l, r), (b, t) = self._shown
-        if left < l or right > r or bottom < b or top > t:
-            self._shown = (min(l, left), max(r, right)), (min(b, bottom), max(t, top))
-            self.axes.set(xlim=self._shown[0], ylim=self._shown[1])
+    def add(self, kind, *points, zorder=3.0, **style):
+        """Draw an item of :mod:`hapticlab.library.display_list`."""
+        self.axes.add(kind, self.place(points), zorder, **style)
 
-    def line(self, *points, width=1.5, color=INK, **style):
+    def line(self, *points, width=1.5, color=INK, linestyle="-", zorder=2.0):
         """Draw a line through points (x, y)."""
-        self.axes.plot(*self.place(points), color=color, linewidth=width, solid_capstyle="round", **style)
+        self.add("line", *points, zorder=zorder, colour=color, width=width, dash=DASHES.get(linestyle, ()))
 
-    def area(self, points, color=BODY, edge=INK, zorder=3):
+    def area(self, points, color=BODY, edge=INK, zorder=3.0, **style):
         """Fill a polygon."""
-        self.axes.fill(*self.place(points), facecolor=color, edgecolor=edge, linewidth=1.4, zorder=zorder)
+        self.add("area", *points, zorder=zorder, fill=color, edge="" if edge == "none" else edge, **style)
 
-    def text(self, at, text, right=0.0, up=0.0, **style):
-        """Write text centred at a point, moved by so many u."""
-        at = at[0] + right * self.u, at[1] + up * self.u
-        (x,), (y,) = self.place([at], 1 + 0.8 * _letters(text), 2.0)
-        self.axes.text(x, y, text, **{"ha": "center", "va": "center", **TEXT, **style})
+    def text(self, at, words, right=0.0, up=0.0, color=INK):
+        """Name what is at a point; the name stands so many u from there if there is room."""
+        beside = at[0] + right * self.u, at[1] + up * self.u
+        self.add("label", at, beside, zorder=9, words=words, colour=color)
 
     def arrow(self, start, end, label="", color=INK, **moved):
         """Draw an arrow; its label stands beyond the tip unless moved by ``right``, ``up`` [u]."""
-        look = {"arrowstyle": "-|>", "color": color, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
-        tail, tip = zip(*self.place([start, end]), strict=True)
-        self.axes.annotate("", tip, tail, arrowprops=look, zorder=8)
+        self.add("arrow", start, end, zorder=8, colour=color)
         if label:
             (x1, y1), (x2, y2) = start, end
             length = math.hypot(x2 - x1, y2 - y1) or 1.0
@@ -83,82 +79,92 @@ class Sketch:
         end = origin + value
         if abs(value) > u:
             self.arrow((origin, y), (end, y))
-        self.text((end, y), name, right=2.4 if value >= 0 else -2.4)
+        self.text((end, y), name, right=2.2 if value >= 0 else -2.2)
 
-    def handle(self, x, y=0.0, below=8.0, **moved):
-        """Draw the handle at x and its coordinate ``below`` it [u]; its name stands above unless moved."""
-        u = self.u
-        self.area(_box((x, y), 3 * u, 9 * u), color=HANDLE, zorder=6)
-        self.text((x, y), "handle", **(moved or {"up": 9.3}), color=HANDLE)
+    def handle(self, x, y=0.0, side=1, up=1, below=9.0):
+        """Draw the handle with its face exactly at x.
+
+        Parameters
+        ----------
+        side : int
+            Where its face looks: 1 to the right, -1 to the left, 0 both ways, then it is a thin blade.
+        up : int
+            1 where its knob is above, -1 where it is below.
+        below : float
+            How far below it its coordinate is drawn [u].
+        """
+        u, back = self.u, x - side * THICK * self.u
+        knob = (x + back) / 2, y + up * KNOB * u
+        self.add("handle", (x, y), (back, y), knob, zorder=6, high=FACE * u, round=ROUND * u)
+        self.text(knob, "handle", right=-6.5 if side >= 0 else 6.5, color=HANDLE)
         self.coordinate("$x$", x, y - below * u)
+        # the motor pushes the back, below what may hold the handle there
+        beside, away = y - 3.9 * u, -1 if side >= 0 else 1
+        self.add("force", (back, beside), (back + away * FULL * u, beside), zorder=6)
+
+    def slider(self, x, foot, knob, low):
+        """Draw a handle that stands on what it slides along, from its foot to its knob; its coordinate at a height ``low``."""
+        u = self.u
+        self.add("handle", (x, foot), (x, foot), (x, knob), zorder=6, high=0.0, round=ROUND * u)
+        self.text((x, knob), "handle", right=6.5, color=HANDLE)
+        self.coordinate("$x$", x, low)
+        self.add("force", (x - ROUND * u, knob), (x - (ROUND + FULL) * u, knob), zorder=6)
+
+    def wall(self, place, face, side, half, label=""):
+        """Draw a wall that begins at a place, and gives where a face of some half height [m] is beyond it."""
+        u, end, (low, high) = self.u, self.ends[side > 0], self.across
+        deep = max((end - place) * side, 4 * u)
+        middle, around = (high + low) / 2, (high - low) / 2
+        self.add("wall", (place, 0), (face, 0), (place + side * deep, 0), zorder=1, high=around, middle=middle, face=half)
+        if label:
+            self.text((place, low + 1.5 * u), label, right=side * 2.6, up=0.8)
 
     def ground(self, start, end, depth=1.5):
         """Draw a line that does not move, hatched on its right as seen from start to end."""
-        (x1, y1), (x2, y2), u = start, end, self.u
-        length = math.hypot(x2 - x1, y2 - y1)
-        ax, ay = (x2 - x1) / length, (y2 - y1) / length
-        self.line(start, end, width=1.6)
-        feet = [1.5 * u * k for k in range(1, math.ceil((length - 1.4 * u) / (1.5 * u)) + 1)]
-        hatched = []  # there and back, in one line
-        for foot in feet:
-            x, y = x1 + foot * ax, y1 + foot * ay
-            hatched += (x, y), (x + depth * u * (ay - ax), y - depth * u * (ax + ay)), (x, y)
-        self.line(*hatched, width=0.8)
+        self.add("ground", start, end, zorder=2, deep=depth * self.u)
 
-    def spring(self, start, end, label="", up=3.4, right=0.0, coils=6, height=1.6):
+    def spring(self, start, end, label="", up=3.0, right=0.0, coils=6, height=1.2, **carries):
         """Draw a spring between two points, its label beside the middle."""
-        at, length = self._along(start, end, height)
-        lead = min(0.25, 2 * self.u / length)
-        turns = [lead + (1 - 2 * lead) * (k + 0.5) / (2 * coils) for k in range(2 * coils)]
-        zigzag = [at(part, (-1) ** k) for k, part in enumerate(turns)]
-        self.line(start, at(lead), *zigzag, at(1 - lead), end, width=1.2, zorder=4)
-        if label:
-            self.text(at(0.5), label, right=right, up=up)
+        self.add("spring", start, end, zorder=4, coils=coils, high=height * self.u, **carries)
+        self._name_middle(start, end, label, right, up)
 
-    def damper(self, start, end, label="", up=-3.4, right=0.0, height=1.5):
+    def damper(self, start, end, label="", up=-3.0, right=0.0, height=1.2, **carries):
         """Draw a dashpot between two points, its label beside the middle."""
-        at, _ = self._along(start, end, height)
-        self.line(start, at(0.38), width=1.2, zorder=4)
-        self.line(at(0.66, 1), at(0.38, 1), at(0.38, -1), at(0.66, -1), width=1.2, zorder=4)
-        self.line(at(0.54, 0.7), at(0.54, -0.7), width=2.0, zorder=4)
-        self.line(at(0.54), end, width=1.2, zorder=4)
+        self.add("damper", start, end, zorder=4, high=height * self.u, **carries)
+        self._name_middle(start, end, label, right, up)
+
+    def _name_middle(self, start, end, label, right, up):
         if label:
-            self.text(at(0.5), label, right=right, up=up)
+            self.text(((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), label, right=right, up=up)
 
-    def _along(self, start, end, height):
-        """(Function, length): the point at a fraction of the line from start to end and at heights [u] to its left."""
-        (x, y), (x2, y2) = start, end
-        dx, dy = x2 - x, y2 - y
-        length = math.hypot(dx, dy) or 1.0
-        away = height * self.u / length
-        return lambda part, left=0.0: (x + part * dx - left * away * dy, y + part * dy + left * away * dx), length
-
-    def pair(self, start, end, label="$K,\\ b_c$", apart=4.6):
+    def pair(self, start, end, spring="$K$", damper="$b_c$", apart=4.6, **carries):
         """Draw a spring above a damper between two points of one height: a virtual coupler, Fig. 23.4."""
         (x1, y), (x2, _), half = start, end, apart / 2 * self.u
         for place in (x1, x2):
             self.line((place, y - half), (place, y + half), width=1.2, zorder=4)
-        self.spring((x1, y + half), (x2, y + half), label, coils=5, height=1.2)
-        self.damper((x1, y - half), (x2, y - half), height=1.2)
+        self.spring((x1, y + half), (x2, y + half), spring, up=2.5, **carries)
+        self.damper((x1, y - half), (x2, y - half), damper, up=-2.5, **{k: v for k, v in carries.items() if k == "carries"})
 
-    def block(self, centre, width, height, label=""):
+    def block(self, centre, width, height, label="", name=""):
         """Draw a body as a box, width and height in u."""
-        self.area(_box(centre, width * self.u, height * self.u))
+        self.area(_box(centre, width * self.u, height * self.u), name=name)
         if label:
             self.text(centre, label)
 
-    def disc(self, centre, radius, turn=None, color=BODY, zorder=3):
+    def disc(self, centre, radius, turn=None, color=BODY, zorder=3.0, name=""):
         """Draw a disc, with a mark where it is told how far it has turned [rad, counterclockwise]."""
-        self.area(ring(centre, radius, 72), color=color, zorder=zorder)
-        if turn is not None:
-            mark = centre[0] + radius * math.cos(turn), centre[1] + radius * math.sin(turn)
-            self.line(centre, mark, width=1.0, color=SOFT, zorder=zorder + 0.5)
+        rim = centre[0] + radius * math.cos(turn or 0.0), centre[1] + radius * math.sin(turn or 0.0)
+        self.add("disc", centre, rim, zorder=zorder, fill=color, edge=INK, mark=turn is not None, name=name)
+
+    def gear(self, centre, radius, teeth, turn, deep, color=BODY):
+        """Draw a gear whose tooth 0 points along ``turn`` [rad]; its teeth reach ``deep`` [m] to either side of the radius."""
+        tip = centre[0] + (radius + deep) * math.cos(turn), centre[1] + (radius + deep) * math.sin(turn)
+        self.add("gear", centre, tip, zorder=3, teeth=teeth, deep=deep, fill=color)
 
     def rod(self, start, end, label="", right=0.0, up=0.0, width=3.0):
         """Draw a rigid link, its label beside the middle."""
         self.line(start, end, width=width, zorder=4)
-        if label:
-            self.text(((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), label, right=right, up=up)
+        self._name_middle(start, end, label, right, up)
 
     def pin(self, at, fixed=False):
         """Draw a pin joint; a fixed one stands on the ground."""
@@ -166,17 +172,18 @@ class Sketch:
         if fixed:
             self.area([(x, y), (x - 2 * u, y - 3 * u), (x + 2 * u, y - 3 * u)], color="#ffffff", zorder=4)
             self.ground((x - 3 * u, y - 3 * u), (x + 3 * u, y - 3 * u))
-        self.area(ring(at, 0.8 * u, 24), "#ffffff", zorder=7)
+        self.disc(at, 0.7 * u, color="#ffffff", zorder=7)
 
     def angle(self, centre, radius, start, end, label):
         """Draw an angle as an arc with an arrow from start to end [rad], named beyond its middle or 45 degrees on."""
         reach, middle = radius * self.u, start + np.clip((end - start) / 2, -0.8, 0.8)
-        turns = np.linspace(start, end, 40)
-        arc = np.asarray(centre) + reach * np.column_stack([np.cos(turns), np.sin(turns)])
+        turns = np.linspace(start, end, 12)
+        arc = (np.asarray(centre) + reach * np.column_stack([np.cos(turns), np.sin(turns)])).tolist()
         self.line(*arc, width=1.0, zorder=6)
         if abs(end - start) * radius > 2:
-            self.arrow(arc[-6], arc[-1])
-        self.text(centre, label, right=(radius + 2.6) * np.cos(middle), up=(radius + 2.6) * np.sin(middle))
+            self.arrow(arc[-2], arc[-1])
+        tip = centre[0] + reach * np.cos(middle), centre[1] + reach * np.sin(middle)
+        self.text(tip, label, right=2.4 * np.cos(middle), up=2.4 * np.sin(middle))
 
 
 def clearance(x, z, spare=0.01):
@@ -193,12 +200,6 @@ def ring(centre, radius, sides):
 def _turns(sides):
     angles = np.linspace(0, 2 * np.pi, sides + 1)
     return np.column_stack([np.cos(angles), np.sin(angles)]).tolist()
-
-
-@lru_cache(1000)
-def _letters(text):
-    """Approximate number of letters of a text once it is typeset."""
-    return len(re.sub(r"\\\w+", "o", text).strip("$"))
 
 
 def _box(centre, width, height):

@@ -13,7 +13,7 @@ import sympy as sp
 
 from ..scene.notation.symbols import n, parameters, when, x
 from ..scene.scene import Scene
-from .sketch import INK, SOFT, Sketch
+from .sketch import SOFT, Sketch
 
 TWO_PI = 2 * sp.pi
 
@@ -46,19 +46,19 @@ def detents() -> Scene:
 
 def draw_detents(axes, *, x=0.013, A=0.6, p=0.01, **_):
     """Draw the potential as a track on which the handle's roller rests."""
-    s = Sketch(axes, -0.06, 0.06, -0.024, 0.032)
+    s = Sketch(axes, -0.058, 0.058, -0.0125, 0.0175)
     height = 0.01 * A * p / 0.006  # the potential's swing is A p/pi
 
     def track(at):
         return -0.5 * height * np.cos(2 * np.pi * np.asarray(at) / p)
 
     _track(s, track, x, "$U(x)$")
-    low = -0.5 * height - 5 * s.u
+    low = -0.5 * height - 2 * s.u
     first = -2 * p
     for place in (first, first + p):
-        s.line((place, low - s.u), (place, -0.5 * height - s.u), width=0.8, color=SOFT)
+        s.line((place, low - s.u), (place, -0.5 * height - 0.5 * s.u), width=0.8, color=SOFT)
     s.arrow((first, low), (first + p, low))
-    s.text((first + p / 2, low), "pitch $p$", up=-2.8)
+    s.text((first + p / 2, low), "pitch $p$", up=-2.2)
 
 
 def texture() -> Scene:
@@ -90,7 +90,7 @@ def texture() -> Scene:
 
 def draw_texture(axes, *, x=0.0135, p_1=0.003, p_2=0.00185, **_):
     """Draw the height that the force imitates, with the handle's stylus on it."""
-    s = Sketch(axes, -0.06, 0.06, -0.024, 0.032)
+    s = Sketch(axes, -0.058, 0.058, -0.0125, 0.0175)
 
     def track(at):
         at = np.asarray(at)
@@ -131,20 +131,20 @@ def virtual_fixture() -> Scene:
 
 def draw_virtual_fixture(axes, *, x=-0.006, x_g=0.0, w=0.02, x_o=0.035, k=150.0, k_w=400.0, **_):
     """Draw the potential: a well at x_g, level ground, the wall that begins at x_o."""
-    s = Sketch(axes, -0.06, 0.06, -0.024, 0.032)
+    s = Sketch(axes, -0.058, 0.058, -0.0125, 0.0175)
 
     def track(at):
         d = np.abs(np.asarray(at) - x_g)
         near, far = d**2 / 2, w**2 / 4 - np.maximum(w - d, 0) ** 2 / 2
         well = k * (np.where(d <= w / 2, near, far) - w**2 / 4)
         wall = 0.5 * k_w * np.maximum(np.asarray(at) - x_o, 0) ** 2
-        return min(0.6, 0.009 / max(k * w**2 / 4, 1e-9)) * (well + wall)  # the well stays above its letters
+        return min(0.6, 0.0055 / max(k * w**2 / 4, 1e-9)) * (well + wall)  # the well stays above its letters
 
     _track(s, track, x, "$U(x)$")
     for place, name in ((x_g, "$x_g$"), (x_o, "$x_o$")):
-        s.line((place, -0.0105), (place, float(track(place))), width=0.8, color=SOFT)
-        s.text((place, -0.0105), name, up=-2.4)
-    s.arrow((x_g, -0.016), (x_g + w, -0.016), "$w$")
+        s.line((place, -0.0072), (place, float(track(place))), width=0.8, color=SOFT)
+        s.text((place, -0.0072), name, up=-1.8)
+    s.arrow((x_g, -0.0064), (x_g + w, -0.0064), "$w$")
 
 
 def buckling_beam() -> Scene:
@@ -176,30 +176,27 @@ def buckling_beam() -> Scene:
 
 def draw_buckling_beam(axes, *, x=0.024, P=1.5, k=90.0, k_3=5e4, **_):
     """Draw the beam upright between its loads, its middle at the handle, and the other state dashed."""
-    s = Sketch(axes, -0.1, 0.1, -0.066, 0.068)
-    u, half = s.u, 0.04
-    along = np.linspace(-half, half, 61)
+    s = Sketch(axes, -0.165, 0.165, -0.04, 0.046)
+    u, half = s.u, 0.027
+    along = np.linspace(-half, half, 25)
     shape = np.cos(0.5 * np.pi * along / half)
     rest = math.sqrt(max(k * (P - 1) / k_3, 0.0)) if k_3 > 0 else 0.0
     for state in (rest, -rest):
-        s.line(*np.column_stack([state * shape, along]), width=1.0, color=SOFT, linestyle="--")
-    s.line(*np.column_stack([x * shape, along]), width=4.0, zorder=3)
+        s.line(*np.column_stack([state * shape, along]).tolist(), width=1.0, color=SOFT, linestyle="--")
+    s.line(*np.column_stack([x * shape, along]).tolist(), width=4.0, zorder=3)
     s.pin((0, -half), fixed=True)
     s.pin((0, half))
-    s.arrow((0, half + 11 * u), (0, half + 1.2 * u))
-    s.text((0, half + 8 * u), "$P\\,P_{cr}$", right=6)
-    s.handle(x, below=29, right=9)
+    s.arrow((0, half + 5.6 * u), (0, half + u))
+    s.text((0, half + 4 * u), "$P\\,P_{cr}$", right=5)
+    s.handle(x, below=11.2)
 
 
 def _track(s, track, x, name):
     """Draw a potential as a track, and the handle with a roller on it."""
-    at = np.linspace(s.left, s.right, 801)
-    s.axes.fill_between(at, track(at), s.bottom + 2 * s.u, color="#efefef", linewidth=0)
-    s.axes.plot(at, track(at), color=INK, linewidth=1.6)  # a wall leaves the frame, which does not grow for it
-    radius, near = 1.2 * s.u, np.linspace(-1, 1, 41)
+    at, u = np.linspace(s.left, s.right, 401), s.u
+    s.add("track", (s.left, s.bottom), (s.right, s.bottom), zorder=1, heights=np.round(track(at) - s.bottom, 7).tolist())
+    radius, near = 1.2 * u, np.linspace(-1, 1, 41)
     rest = float(np.max(track(x + radius * near) + radius * np.sqrt(1 - near**2)))
     s.disc((x, rest), radius, zorder=5)
-    top = max(s.top - 8.5 * s.u, rest + 8 * s.u)
-    s.line((x, rest + radius), (x, top), width=2.0)
-    s.handle(x, top, below=-7, right=6.5 if x < s.right - 15 * s.u else -6.5)
-    s.text((s.left, float(np.max(track(at[:120])))), name, right=4.5, up=3.2)
+    s.slider(x, rest + radius, max(s.top - 3.5 * u, rest + 6 * u), s.bottom + 1.6 * u)
+    s.text((s.left, float(np.max(track(at[:60])))), name, right=4.5, up=2.6)

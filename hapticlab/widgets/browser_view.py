@@ -20,7 +20,7 @@ from .session import PRESSES
 
 KINDS = ("ready", "alive", "gone", "intend", "hold", "move", "press")
 BROWSER = Path(__file__).parent / "browser"
-SCRIPTS = ("playback.js", "picture.js", "traces.js", "sliders.js", "hand.js", "view.js")
+SCRIPTS = ("playback.js", "labels.js", "parts.js", "picture.js", "traces.js", "sliders.js", "hand.js", "view.js")
 #: time on view in the traces [s]
 SECONDS = 4.0
 #: two clocks may drift apart so fast, and an age of a press be wrong by that of a heartbeat at most [s/s]
@@ -159,17 +159,9 @@ class Age:
 def take_apart(picture):
     """Items of a picture, each with its number of points; and all points, shape (points, 2)."""
     shape, points = [], []
-    for kind, *rest in picture:
-        if kind == "text":
-            (place, *style), places = rest, 1
-            points.append(place)
-        elif kind == "arrow":
-            (tail, tip, *style), places = rest, 2
-            points += [tail, tip]
-        else:
-            (corners, *style), places = rest, len(rest[0])
-            points += list(corners)
-        shape.append([kind, places, *style])
+    for kind, places, style in picture:
+        shape.append([kind, len(places), style])
+        points += places
     return shape, np.array(points, dtype="<f4").reshape(-1, 2)
 
 

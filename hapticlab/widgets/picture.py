@@ -7,17 +7,14 @@ import numpy as np
 
 from ..analysis.pictures.pictures import drawing_of, named_by
 from ..analysis.pictures.schematic import Schematic
-from ..base.drawing import COLD
 from ..errors import AnalysisError
+from ..library.display_list import DisplayList
 from ..library.entries import CATALOGUE
-from ..library.sketch import HANDLE, INK, ring
-from .picture_items import RecordingAxes
 
 #: how far the handle goes to either side [m]
 REACH = 0.05
-#: the force that is drawn as long as FULL of the picture's width, where the paddle has no limit [N]
-FORCE, FULL = 5.0, 0.2
-HAND = COLD
+#: the force that colours and arrows show in full, where the paddle has no limit [N]
+FORCE = 5.0
 
 
 def moving_picture(scene, paddle=None, picture=None):
@@ -49,7 +46,7 @@ def moving_picture(scene, paddle=None, picture=None):
     >>> import hapticlab as hl
     >>> picture = moving_picture(hl.wall()(k=300, x_o=0.01))
     >>> [item[0] for item in picture.draw({"x": 0.012, "F": 0.6, "intent": 0.02})][-2:]
-    ['arrow', 'text']
+    ['hand', 'frame']
     """
     return MovingPicture(scene, _drawing(scene, picture), getattr(paddle, "force_max", None) or FORCE)
 
@@ -75,9 +72,9 @@ class MovingPicture:
         self.channels = {type(q).__name__: q for q in scene.coordinates if type(q).__name__ in names}
         self._names = names & ({*self.channels, "t", "T"} | set(scene.parameters))
         self.box, self.along = self._fit()
-        self._unit = (self.box[1] - self.box[0]) / 100
         ends = self.box[:2] if abs(self.along[0]) > 0.5 else self.box[2:]
-        self.reach = max(ends[0], -REACH), min(ends[1], REACH)
+        most = getattr(getattr(drawing, "layout", None), "reach", REACH)
+        self.reach = max(ends[0], -most), min(ends[1], most)
 
     def draw(self, values):
         """Return the items of one moment.
@@ -86,62 +83,47 @@ class MovingPicture:
         ----------
         values : dict of str to float
             x [m], and of F [N], intent [m], the channels and the parameters what there is, in SI; parameters are as in
-            the scene unless given.
+            the scene unless given. Without F no force is drawn.
 
         Returns
         -------
-        tuple of items, as :mod:`hapticlab.widgets.picture_items` lists them; coordinates in metres
+        tuple of items, as :mod:`hapticlab.library.display_list` lists them
         """
-        items = self._mechanism(values).items
-        return items + self._marks(values, items)
+        drawn = self._mechanism(values)
+        shown = math.isfinite(values.get("F", 0.0))
+        items = [self._told(item) for item in drawn.items if shown or item[0] != "force"]
+        hand = self._hand(values, items)
+        (left, right), (bottom, top) = drawn.get_xlim(), drawn.get_ylim()
+        return (*items, *hand, ("frame", [(left, bottom), (right, top)], {}))
+
+    def _told(self, item):
+        kind, points, style = item
+        return (kind, points, {**style, "full": self._full}) if kind == "force" else item
 
     def _mechanism(self, values):
-        axes = RecordingAxes()
+        drawn = DisplayList()
         known = {**self.scene.values, **values}
         with np.errstate(all="ignore"):  # what cannot be put together is left out
-            self._drawing(axes, x=values["x"], **{name: known[name] for name in self._names if name in known})
-        return axes
+            self._drawing(drawn, x=values["x"], **{name: known[name] for name in self._names if name in known})
+        return drawn
 
-    def _marks(self, values, items):
-        """Marks of the hand's intent and of the motor's force, at the handle."""
-        handle = _handle(items)
-        if handle is None:
+    def _hand(self, values, items):
+        """The hand, which pulls the handle's knob to where it aims."""
+        intent, handle = values.get("intent"), _handle(items)
+        if handle is None or intent is None or not math.isfinite(intent):
             return ()
-        (x, y), (ax, ay), u, found = handle, self.along, self._unit, ()
-        intent, F = values.get("intent"), values.get("F", 0.0)
-
-        def beside(along, across):
-            return x + along * ax - across * ay, y + along * ay + across * ax
-
-        if intent is not None and math.isfinite(intent):
-            across = 2.8 * u if _is_named_beside(items, handle, u) else 0.0
-            hand = beside(intent - values["x"], across)
-            found += (("line", [beside(0.0, across), hand], 2.0, HAND, (4, 3)),)
-            found += (("area", ring(hand, 1.4 * u, 16), "#ffffff", HAND),)
-        if math.isfinite(F):
-            side, length = 1.0 if F < 0 else -1.0, FULL * 100 * u * min(abs(F) / self._full, 1.5)
-            if length > 0.5 * u:
-                tail, tip = (beside(side * away, -3.0 * u) for away in (1.5 * u, 1.5 * u + length))
-                found += (("arrow", tail, tip, INK, ""),)
-            beyond = 10 * u + (length if side < 0 else 3 * u)
-            words = beside(-beyond, -3.0 * u) if abs(ax) > 0.5 else beside(0.0, -17 * u)
-            found += (("text", words, f"motor {abs(F):.1f} N", INK),)
-        return found
+        (_, _, (x, y)), style = handle
+        way = intent - values["x"]
+        return (("hand", [(x, y), (x + way * self.along[0], y + way * self.along[1])], {"round": style["round"]}),)
 
     def _fit(self):
-        """Return the box that shows the mechanism wherever it is likely to go, and the way the handle moves."""
+        """Return the box that shows the mechanism, and the way the handle moves."""
         defaults = _defaults(self._drawing)
         start = {name: defaults.get(name, 0.0) for name in self.channels}
-        at = defaults.get("x", 0.0)
-
-        def drawn(x):
-            follow = {name: value + x - at for name, value in start.items() if _is_length(self.channels[name])}
-            return self._mechanism({"x": x, **start, **follow})
-
-        left, right, bottom, top = np.transpose([(*axes.xlim, *axes.ylim) for axes in map(drawn, (at, -REACH, REACH))])
-        places = [_handle(drawn(x).items) for x in (-1e-3, 1e-3)]
-        moved = np.subtract(places[1], places[0]) if all(places) else np.array([1.0, 0.0])
-        box = left.min(), right.max(), bottom.min(), top.max()
+        near = [self._mechanism({"x": x, **start}) for x in (-1e-3, 1e-3)]
+        handles = [_handle(drawn.items) for drawn in near]
+        moved = np.subtract(handles[1][0][2], handles[0][0][2]) if all(handles) else np.array([1.0, 0.0])
+        box = *near[0].get_xlim(), *near[0].get_ylim()
         return tuple(map(float, box)), tuple(map(float, moved / np.hypot(*moved)))
 
 
@@ -169,19 +151,6 @@ def _defaults(drawing):
     return {p.name: p.default for p in given if isinstance(p.default, (int, float))}
 
 
-def _is_length(coordinate):
-    return type(coordinate).unit == "m"
-
-
 def _handle(items):
-    """Return where the handle is drawn, its centre (x, y) [m]."""
-    for item in items:
-        if item[0] == "area" and item[2] == HANDLE:
-            xs, ys = zip(*item[1], strict=True)
-            return (min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2
-    return None
-
-
-def _is_named_beside(items, place, u):
-    """Tell whether the word for the handle stands beside it, where the hand would cover it."""
-    return any(item[:1] + item[2:3] == ("text", "handle") and abs(item[1][1] - place[1]) < 3 * u for item in items)
+    """Return the points of the handle, its face first, and its style; None where it is not drawn."""
+    return next(((points, style) for kind, points, style in items if kind == "handle"), None)

@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 
+from ..library.parts import primitives
 from .frame import COLUMNS, Frame
+from .plain_letters import plain
 from .sliders import open_ipywidgets
 
 #: an SVG is drawn so often a second at most: of frames that come at 50 to 60 a second, every other one
@@ -173,7 +175,8 @@ def svg(frame, rows, about):
         x = (point[0] - (left + right) / 2) * scale + WIDTH / 2
         return f"{x:.1f},{(HEIGHT / 2 - (point[1] - (bottom + top) / 2) * scale):.1f}"
 
-    picture = "".join(_item(item, place) for item in frame.picture)
+    force = float(rows[-1, 2]) if len(rows) else math.nan
+    picture = "".join(_item(item, place) for item in primitives(frame.picture, force))
     traces = "".join(_trace(k, trace, rows, frame.time) for k, trace in enumerate(about["traces"]))
     now = [f"{trace['label']} = {rows[-1, k + 1] * trace['scale']:.3g} {trace['unit_shown']}" for k, trace in
            enumerate(about["traces"])] if len(rows) else []  # fmt: skip
@@ -185,20 +188,17 @@ def svg(frame, rows, about):
 
 
 def _item(item, place):
-    kind, where, *rest = item
+    kind, points, style = item
     if kind == "line":
-        width, colour, dash = rest
-        dashed = f' stroke-dasharray="{" ".join(map(str, dash))}"' if dash else ""
-        return _path(where, place, f'fill="none" stroke="{colour}" stroke-width="{width:g}"{dashed}')
+        dashed = f' stroke-dasharray="{" ".join(map(str, style["dash"]))}"' if style["dash"] else ""
+        return _path(points, place, f'fill="none" stroke="{style["colour"]}" stroke-width="{style["width"]:g}"{dashed}')
     if kind == "area":
-        fill, edge = rest
-        return _path(where, place, f'fill="{fill or "none"}" stroke="{edge or "none"}"', " Z")
+        return _path(points, place, f'fill="{style["fill"] or "none"}" stroke="{style.get("edge") or "none"}"', " Z")
     if kind == "arrow":
-        tip, colour = rest[:2]
-        return _path([where, tip], place, f'stroke="{colour}" stroke-width="2.5"') + _head(where, tip, place, colour)
-    text, colour = rest[0], rest[1]
-    x, y = place(where).split(",")
-    return f'<text x="{x}" y="{y}" text-anchor="middle" fill="{colour}">{html.escape(str(text))}</text>'
+        colour = style["colour"]
+        return _path(points, place, f'stroke="{colour}" stroke-width="2.5"') + _head(*points, place, colour)
+    x, y = place(points[1]).split(",")
+    return f'<text x="{x}" y="{y}" text-anchor="middle" fill="{style["colour"]}">{html.escape(plain(style["words"]))}</text>'
 
 
 def _path(points, place, style, end=""):

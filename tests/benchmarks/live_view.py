@@ -19,7 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "browser"))
 from lab import Lab, browsing
 
-from hapticlab.widgets.picture import HAND
+from hapticlab.base.drawing import COLD as HAND
 
 JUMPS, MOVES = 60, 60  # how often a hand jumps; moves a second of one that drags
 ROUTES = {  # name: whether the server extension is on, and what a notebook does first

@@ -5,13 +5,15 @@ import json
 import pytest
 from lab import REPOSITORY
 
+from hapticlab.widgets.browser_view import SCRIPTS
+
 FOLDER = REPOSITORY / "hapticlab" / "widgets" / "browser"
 PARTS = ("Playback", "Bins", "Scale", "between", "decode", "niceStep", "onDark", "tidy", "shown", "number", "unitWords")
 
 
 @pytest.fixture(scope="module")
 def page(browser):
-    scripts = (FOLDER / name for name in ("playback.js", "picture.js", "traces.js", "sliders.js", "hand.js", "view.js"))
+    scripts = (FOLDER / name for name in SCRIPTS)
     source = "\n".join(script.read_text("utf-8") for script in scripts).replace("export default { render }", "")
     page = browser.new_page()
     page.add_script_tag(content=f"(() => {{ {source}\n window.parts = {{ {', '.join(PARTS)} }} }})()")

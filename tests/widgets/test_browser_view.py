@@ -13,10 +13,10 @@ from hapticlab.widgets.frame import Frame
 from hapticlab.widgets.session import PRESSES
 
 PICTURE = (
-    ("line", [(0.0, 0.0), (0.01, 0.0), (0.02, 0.005)], 1.5, "#000000", (6, 4)),
-    ("area", [[0.0, 0.0], [0.01, 0.0], [0.01, 0.02]], "#dbe6f0", ""),
-    ("text", (0.03, 0.01), "handle", "#c1440e"),
-    ("arrow", (0.0, 0.01), (0.02, 0.01), "#000000", "2.0 N"),
+    ("line", [(0.0, 0.0), (0.01, 0.0), (0.02, 0.005)], {"width": 1.5, "colour": "#000000", "dash": (6, 4)}),
+    ("spring", [(0.0, 0.0), (0.01, 0.0)], {"high": 0.002, "coils": 5}),
+    ("label", [(0.03, 0.01), (0.03, 0.02)], {"words": "handle", "colour": "#3f5563"}),
+    ("arrow", [(0.0, 0.01), (0.02, 0.01)], {"colour": "#000000"}),
 )
 
 
@@ -57,11 +57,8 @@ def test_a_frame_is_header_rows_and_points():
     assert (time, rows) == (1.5, 3)
     np.testing.assert_array_equal(numbers[:15], np.arange(15))
     np.testing.assert_allclose(numbers[15:21], [0, 0, 0.01, 0, 0.02, 0.005], rtol=1e-7)
-    assert len(numbers) == 15 + 2 * (3 + 3 + 1 + 2)
-    assert content["shape"] == [
-        ["line", 3, 1.5, "#000000", (6, 4)], ["area", 3, "#dbe6f0", ""], ["text", 1, "handle", "#c1440e"],
-        ["arrow", 2, "#000000", "2.0 N"],
-    ]  # fmt: skip
+    assert len(numbers) == 15 + 2 * (3 + 2 + 2 + 2)
+    assert content["shape"] == [[kind, len(points), style] for kind, points, style in PICTURE]
     assert content["flags"] == {"running": True} and content["values"] == {"k": 300.0}
 
 

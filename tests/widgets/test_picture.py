@@ -1,69 +1,43 @@
-"""The moving picture: the same drawing as hl.mechanics.picture, the hand's intent and the motor's force where they are."""
+"""The moving picture: the same drawing as hl.mechanics.picture, with the hand, and what a canvas needs to colour forces."""
+
+import math
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import hapticlab as hl
-from hapticlab.base.drawing import new_figure
+from hapticlab.analysis.pictures.pictures import drawing_of
+from hapticlab.library.display_list import DisplayList
 from hapticlab.library.entries import CATALOGUE
-from hapticlab.library.sketch import HANDLE
-from hapticlab.widgets.picture import COLD, moving_picture
-from hapticlab.widgets.picture_items import RecordingAxes, plain
+from hapticlab.library.parts import primitives
+from hapticlab.widgets.picture import moving_picture
+from hapticlab.widgets.plain_letters import plain
 
 STATE = {"x": 0.012, "F": 1.5, "intent": 0.02}
 
 
 def of_kind(items, kind):
-    return [item for item in items if item[0] == kind]
-
-
-def area(items, fill):
-    """Return the outline of the first area of a colour, and its centre."""
-    outline = np.array(next(item[1] for item in items if item[0] == "area" and item[2] == fill))
-    return outline, (outline.min(axis=0) + outline.max(axis=0)) / 2
-
-
-#: between them they use every part of a sketch
-EVERY_PART = ("tuned_absorber", "gears", "rolling", "ball_on_the_paddle", "detents", "slider_crank")
-
-
-@pytest.mark.parametrize("name", EVERY_PART)
-def test_what_is_recorded_is_what_matplotlib_draws(name):
-    entry = CATALOGUE[name]
-    axes, recorded = new_figure(height=2).subplots(), RecordingAxes()
-    for one in (axes, recorded):
-        entry.draw(one, x=0.007)
-    items = recorded.items
-    assert sorted(item[1] for item in of_kind(items, "line")) == sorted(line.get_xydata().tolist() for line in axes.lines)
-    drawn = [text for text in axes.texts if text.get_text()]
-    arrows = [text for text in axes.texts if not text.get_text()]
-    assert sorted(item[2] for item in of_kind(items, "text")) == sorted(plain(text.get_text()) for text in drawn)
-    tips = sorted(tuple(float(c) for c in text.xy) for text in arrows)
-    assert sorted(item[2] for item in of_kind(items, "arrow")) == tips
-    assert recorded.get_xlim() == axes.get_xlim() and recorded.get_ylim() == axes.get_ylim()
-
-
-def test_what_comes_later_covers_what_came_before():
-    axes = RecordingAxes()
-    axes.fill([0, 1, 1], [0, 0, 1], facecolor="#ffffff", edgecolor="none", zorder=6)
-    axes.plot([0, 1], [0, 1], color="#000000", linewidth=1.0, linestyle="--")
-    axes.plot([0, np.nan], [0, 1], color="#000000", linewidth=1.0)  # lies nowhere
-    assert [item[0] for item in axes.items] == ["line", "area"]
-    assert axes.items[0] == ("line", [[0.0, 0.0], [1.0, 1.0]], 1.0, "#000000", (6, 4))
-    assert axes.items[1][3] == ""
+    """Return the points and the style of each item of a kind."""
+    return [(np.array(points), style) for name, points, style in items if name == kind]
 
 
 @pytest.mark.parametrize("name", list(CATALOGUE))
-def test_a_picture_holds_still_and_the_handle_stays_in_it(name):
-    picture = moving_picture(CATALOGUE[name].scene())
-    left, right, bottom, top = picture.box
-    for x in (-0.05, 0.0, 0.05):
-        start = dict.fromkeys(picture.channels, x) if "theta" not in picture.channels else {"z": x}
-        items = picture.draw({"x": x, "F": 0.0, **{key: value for key, value in start.items() if key in picture.channels}})
-        _, (at, up) = area(items, HANDLE)
-        assert left < at < right and bottom < up < top
-        assert picture.box == (left, right, bottom, top)
-    assert picture.along == pytest.approx((0, 1) if name == "ball_on_the_paddle" else (1, 0), abs=1e-12)
+def test_a_picture_is_the_drawing_the_hand_and_a_frame_that_the_handle_stays_in(name):
+    scene = CATALOGUE[name].scene()
+    picture, still = moving_picture(scene), DisplayList()
+    low, high = (0.8 * end for end in picture.reach)
+    for x in (low, 0.0, high):
+        moving = dict.fromkeys([q for q in picture.channels if picture.channels[q].unit == "m"], x)
+        still = DisplayList()
+        drawing_of(scene)(still, x=x, **{**scene.values, **moving})
+        items = picture.draw({"x": x, "F": 0.0, "intent": x, **moving})
+        assert [kind for kind, *_ in items] == [*(kind for kind, *_ in still.items), "hand", "frame"]
+        ((left, bottom), (right, top)) = items[-1][1]
+        assert (left, right, bottom, top) == pytest.approx(picture.box)
+        for point in of_kind(items, "handle")[0][0]:
+            assert left < point[0] < right and bottom < point[1] < top
+    assert picture.along == pytest.approx((0, 1) if name == "ball_on_the_paddle" else (1, 0), abs=1e-9)
 
 
 def test_a_plate_that_is_tilted_tilts_the_way_of_the_handle():
@@ -72,44 +46,55 @@ def test_a_plate_that_is_tilted_tilts_the_way_of_the_handle():
 
 
 @pytest.mark.parametrize("scene", [hl.wall()(k=300, x_o=0.01), hl.library.ball_on_the_paddle(), hl.library.rolling()(alpha=0.3)])
-def test_the_hand_and_the_motor_act_along_the_handles_way(scene):
+def test_the_hands_spring_goes_from_the_knob_to_where_the_hand_aims_and_the_motor_acts_along(scene):
     picture = moving_picture(scene)
     along = np.array(picture.along)
-    for intent, F in ((0.02, 1.5), (-0.005, -0.7)):
-        items = picture.draw({"x": 0.012, "F": F, "intent": intent})
-        handle = area(items, HANDLE)[1]
-        line = np.array(next(item[1] for item in of_kind(items, "line") if item[3] == COLD))
-        np.testing.assert_allclose(line[1] - line[0], (intent - 0.012) * along, atol=1e-12)
-        np.testing.assert_allclose((line[0] - handle) @ along, 0.0, atol=1e-12)
-        tail, tip = map(np.array, of_kind(items, "arrow")[-1][1:3])
-        length = (tip - tail) @ along
-        assert np.sign(length) == -np.sign(F)  # the motor applies F_m = -F, Fig. 23.5
-        full = 0.2 * (picture.box[1] - picture.box[0])
-        assert abs(length) == pytest.approx(full * abs(F) / 5.0, rel=1e-12)
-        assert of_kind(items, "text")[-1][2] == f"motor {abs(F):.1f} N"
+    for intent in (0.02, -0.005):
+        items = picture.draw({"x": 0.012, "F": 1.0, "intent": intent})
+        (knob, aim), _ = of_kind(items, "hand")[0]
+        np.testing.assert_allclose(knob, of_kind(items, "handle")[0][0][2], atol=1e-12)
+        np.testing.assert_allclose(aim - knob, (intent - 0.012) * along, atol=1e-12)
+        (foot, tip), style = of_kind(items, "force")[0]
+        assert abs((tip - foot) @ along) == pytest.approx(np.hypot(*(tip - foot)), rel=1e-12)
+        assert style == {"full": 5.0}
+    for gone in (None, math.nan):
+        assert not of_kind(picture.draw({"x": 0.012, "F": 1.0, "intent": gone}), "hand")
 
 
-def test_the_force_arrow_is_scaled_by_what_the_motor_can_and_ends():
+@pytest.mark.parametrize("F", [-2.0, 0.7, 4.0])
+def test_the_motors_arrow_is_against_the_force_and_as_long_as_it_is_large(F):
     weak = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, force_max=2.0)
-    picture = moving_picture(hl.wall()(k=300), weak)
-    lengths = [np.ptp([c[0] for c in of_kind(picture.draw({"x": 0.0, "F": F}), "arrow")[-1][1:3]]) for F in (2.0, 50.0)]
-    width = picture.box[1] - picture.box[0]
-    assert lengths == [pytest.approx(0.2 * width, rel=1e-12), pytest.approx(0.3 * width, rel=1e-12)]
-    assert of_kind(picture.draw({"x": 0.0, "F": 0.0}), "text")[-1][2] == "motor 0.0 N"
-    arrows = [len(of_kind(picture.draw({"x": 0.0, "F": F}), "arrow")) for F in (0.0, np.nan, 1.0)]
-    assert arrows == [arrows[0], arrows[0], arrows[0] + 1]
+    items = moving_picture(hl.wall()(k=300), weak).draw({"x": 0.0, "F": F})
+    (foot, full), style = of_kind(items, "force")[0]
+    assert style["full"] == 2.0
+    arrow = [points for points, _ in of_kind(primitives(items, F), "arrow")][-1]
+    length = arrow[1][0] - arrow[0][0]
+    assert np.sign(length) == -np.sign(F)  # the motor applies F_m = -F, Fig. 23.5
+    assert abs(length) == pytest.approx(min(abs(F) / 2.0, 1.5) * np.hypot(*(full - foot)), rel=1e-12)
+    assert f"motor {abs(F):.1f} N" in [style["words"] for _, style in of_kind(primitives(items, F), "label")]
 
 
-def test_a_wall_follows_its_slider():
+def test_a_force_that_is_hidden_is_in_no_item():
+    picture = moving_picture(hl.wall()(k=300))
+    assert [kind for kind, *_ in picture.draw({"x": 0.0, "F": math.nan}) if kind == "force"] == []
+
+
+def test_a_wall_follows_its_slider_and_a_rod_its_length():
     picture = moving_picture(hl.wall()(k=300, x_o=0.01))
     assert picture.channels == {}
 
     def wall(**values):
-        upright = [item[1] for item in of_kind(picture.draw({**STATE, **values}), "line") if item[1][0][0] == item[1][-1][0]]
-        return max(upright, key=lambda points: abs(points[0][1] - points[-1][1]))[0][0]
+        return of_kind(picture.draw({**STATE, **values}), "wall")[0][0][0][0]
 
     assert wall(x_o=0.018) - wall() == pytest.approx(0.008, abs=1e-12)
     assert wall(k=500.0) == wall()
+    swing = moving_picture(hl.library.pendulum_on_the_handle())
+    for l in (0.05, 0.15, 0.4):
+        items = swing.draw({"x": 0.0, "z": 0.0, "theta": 0.3, "l": l})
+        rod = next(points for points, style in of_kind(items, "line") if style["width"] == 2.5)
+        assert np.hypot(*(rod[1] - rod[0])) == pytest.approx(l, rel=1e-12)
+        (left, bottom), (right, top) = items[-1][1]
+        assert left < rod[1][0] < right and bottom < rod[1][1] < top  # the frame grows with it
 
 
 def test_what_must_be_watched_is_what_the_picture_shows():
@@ -121,8 +106,6 @@ def test_what_must_be_watched_is_what_the_picture_shows():
 
 
 def still(z):
-    import sympy as sp
-
     m = hl.parameters("m", units="kg", values=0.1)
     return sp.Eq(m * z.diff(hl.t, 2), 0)
 
@@ -134,10 +117,11 @@ def test_a_picture_of_ones_own():
         axes.plot([x, x_o], [0.0, 0.0], color="#000000", linewidth=2.0)
 
     items = moving_picture(scene, picture=draw).draw(STATE)
-    assert of_kind(items, "line")[0][1] == [[0.012, 0.0], [0.01, 0.0]]
+    assert of_kind(items, "line")[0][0].tolist() == [[0.012, 0.0], [0.01, 0.0]]
     assert moving_picture(scene, picture="detents").draw({**STATE, "A": 0.6, "p": 0.01}) is not None
     ball = hl.shapes.Circle("5 mm").at(x=hl.x(hl.t), y="20 mm", name="ball")
-    outline = np.array(next(item[1] for item in moving_picture(scene, picture=[ball]).draw(STATE) if len(item[1]) == 33))
+    areas = of_kind(moving_picture(scene, picture=[ball]).draw(STATE), "area")
+    outline = next(points for points, _ in areas if len(points) == 33)
     np.testing.assert_allclose(np.hypot(*(outline - (0.012, 0.02)).T), 5e-3, rtol=1e-12)
     with pytest.raises(hl.errors.AnalysisError, match="picture = 3; needs a name of hl.library, shapes in their places"):
         moving_picture(scene, picture=3)
@@ -145,10 +129,44 @@ def test_a_picture_of_ones_own():
         moving_picture(scene, picture="detent")
 
 
+def test_a_display_list_takes_what_is_drawn_on_axes_and_what_comes_later_covers_what_came_before():
+    drawn = DisplayList()
+    drawn.fill([0, 1, 1], [0, 0, 1], facecolor="#ffffff", edgecolor="none", zorder=6)
+    drawn.plot([0, 1], [0, 1], color="#000000", linewidth=1.0, linestyle="--")
+    drawn.plot([0, np.nan], [0, 1], color="#000000", linewidth=1.0)  # lies nowhere
+    drawn.annotate("F", (1, 0), (0, 0), arrowprops={"color": "#000000"})
+    assert [item[0] for item in drawn.items] == ["line", "arrow", "label", "area"]
+    assert drawn.items[0] == ("line", [(0.0, 0.0), (1.0, 1.0)], {"colour": "#000000", "width": 1.0, "dash": (6, 4)})
+    assert drawn.items[1][1] == [(0.0, 0.0), (1.0, 0.0)] and drawn.items[3][2]["edge"] == ""
+
+
 def test_a_linkage_that_cannot_be_put_together_leaves_out_what_lies_nowhere():
     picture = moving_picture(hl.library.four_bar())
     whole, apart = (len(picture.draw({**STATE, "theta": 1.5, "b": b})) for b in (0.05, 0.005))
     assert 0 < apart < whole
+
+
+@pytest.mark.parametrize(("kind", "high"), [("spring", 0.002), ("damper", 0.002)])
+def test_springs_and_dampers_stretch_between_their_ends(kind, high):
+    for end in ((0.02, 0.0), (0.03, 0.04)):
+        parts = primitives([(kind, [(0.0, 0.0), end], {"coils": 5, "high": high})])
+        points = np.concatenate([points for _, points, _ in parts])
+        assert points[0].tolist() == [0.0, 0.0] and points[-1].tolist() == pytest.approx(end)
+        along = np.array(end) / np.hypot(*end)
+        across = points @ np.array([-along[1], along[0]])
+        assert across.max() == pytest.approx(high) and across.min() == pytest.approx(-high)
+
+
+def test_a_spring_is_coloured_by_its_own_force_on_the_scale_of_the_motor():
+    force = ("force", [(0.0, 0.0), (0.1, 0.0)], {"full": 5.0})
+
+    def colour(length):
+        spring = ("spring", [(0.0, 0.0), (length, 0.0)], {"coils": 4, "high": 0.001, "k": 100.0, "rest": 0.02})
+        return primitives([force, spring], F=0.0)[-1][2]["colour"]
+
+    assert colour(0.02) == "#000000"
+    assert colour(0.07) == "#cc5a1a"  # 5 N
+    assert "#000000" < colour(0.03) < colour(0.05) < colour(0.07)
 
 
 @pytest.mark.parametrize(

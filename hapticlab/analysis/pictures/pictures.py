@@ -12,8 +12,10 @@ import numpy as np
 from ...base.drawing import house_style, new_figure
 from ...base.units import in_si
 from ...errors import AnalysisError
+from ...library.display_list import DisplayList
 from ...library.entries import CATALOGUE
 from ...scene.scene import Scene
+from .painting import paint
 from .schematic import Schematic
 
 if TYPE_CHECKING:
@@ -62,17 +64,14 @@ def picture(name: str | Scene | Callable[..., Scene], **state: float | str) -> F
     moved = {key: in_si(value, moving[key], key) for key, value in state.items() if key in moving}
     bound = scene(**{key: value for key, value in state.items() if key not in moving})
     with house_style():
-        figure = new_figure(height=3.0)
-        axes = figure.subplots()
+        figure, drawn = new_figure(height=3.0), DisplayList()
         try:
             with np.errstate(invalid="raise"):
-                drawing(axes, **{**bound.values, **moved})
+                drawing(drawn, **{**bound.values, **moved})
         except FloatingPointError:
             given = ", ".join(f"{key} = {value}" for key, value in state.items())
             raise AnalysisError(f"{name} cannot be put together with {given}; take other lengths or another place") from None
-        axes.set_title(scene.name, fontsize="small")
-        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-        figure.set_size_inches(7.2, 7.2 * (top - bottom) / (right - left) + 0.35)
+        paint(figure, drawn, title=scene.name)
     return figure
 
 
@@ -85,7 +84,8 @@ def _scene_of(name):
         raise AnalysisError(
             f"a {type(name).__name__} has no picture; hl.mechanics.picture draws a scene, or one of the library: 'detents'"
         )
-    return name, CATALOGUE[name].scene(), CATALOGUE[name].draw
+    scene = CATALOGUE[name].scene()
+    return name, scene, CATALOGUE[name].draw or Schematic(scene)
 
 
 def drawing_of(scene):
@@ -95,7 +95,7 @@ def drawing_of(scene):
         if entry.name.split("_")[0] == words[0]:  # names begin alike, so that few scenes have to be made
             made = entry.scene()
             if (made.name, made.coordinates) == (scene.name, scene.coordinates):
-                return entry.draw
+                return entry.draw or Schematic(scene)
     return Schematic(scene)
 
 

@@ -1,6 +1,7 @@
-"""A schematic of any scene, drawn from its equations: the handle, its walls, a block or a pendulum a coordinate.
+"""A schematic of any scene, drawn from its equations: handle, walls, bodies with springs and dampers, pendulums, weights.
 
-Blocks and pendulums are not to scale; walls stand where the face of what meets them touches.
+Along the handle's way everything is to scale, and so are pendulums; bodies have no size of their own. Bodies stand in a row in
+the order in which they follow the handle; where a weight acts along the row, it stands upright.
 """
 
 from functools import cache
@@ -9,28 +10,29 @@ import numpy as np
 import sympy as sp
 
 from ...errors import HapticlabError
-from ...library.sketch import SOFT, Sketch, clearance
-from ...scene.contact.contact import Contact
+from ...library.sketch import FACE, SOFT
+from ...scene.contact.contact import Contact, friction
 from ...scene.notation.symbols import n, t, v, x
+from .elements import Elements, Tie, apart, elements, value_of
+from .layout import DIAL, ROD, lay_out
 from .plain_formulas import formula, plain_symbols
 from .shape_outlines import Outline
 from .wall_boundaries import boundaries
 
-#: from one body to the next, its width, and from the handle to either end of the picture [m]
-APART, WIDE, REACH = 0.055, 0.022, 0.06
-WALL = "#efefef"
 #: coordinates up to which couplings are looked for; more stand in a row, each coupled to the one before
 LOOKED_AT = 4
+#: a body that others follow and the ground holds has the ground's spring so far below the middle, theirs above it [u]
+LOW, RAISED = -6.2, 5.0
 
 
 class Schematic:
-    """Draws a scene in a state: called with axes, x and what else ``names`` lists, as the functions of the library are.
+    """Draws a scene in a state: called with a display list, x and what else ``names`` lists, as the library's drawings are.
 
     Parameters
     ----------
     scene : Scene
     shapes : sequence of Placed
-        Drawn in their places; coordinates that they depend on get no block of their own.
+        Drawn in their places; coordinates that they depend on get no body of their own.
 
     Attributes
     ----------
@@ -42,89 +44,195 @@ class Schematic:
 
     def __init__(self, scene, shapes=()):
         self.outlines = [Outline(shape) for shape in shapes]
-        self.walls = boundaries(scene)
+        self.walls, self.start, self.values = boundaries(scene), _start(scene), dict(scene.values)
         placed = set().union(*(outline.names for outline in self.outlines)) if shapes else set()
         free = [q for q in scene.coordinates if type(q).__name__ not in placed]
-        self.blocks = [type(q).__name__ for q in _chain(scene, [q for q in free if type(q).unit == "m"])]
+        self.bodies = [type(q).__name__ for q in _chain(scene, [q for q in free if type(q).unit == "m"])]
+        self.parts = elements(scene) if len(scene.coordinates) <= LOOKED_AT else _row(self.bodies)
         angles = [q for q in free if type(q).unit == "rad"]
-        self.turning = {type(q).__name__: _carrier(scene, q) for q in angles}
+        self.rods = {type(q).__name__: value_of(self.parts.rods.get(type(q).__name__)) for q in angles}
         self.stands = {type(q).__name__: _stands(scene, q) for q in angles}
-        self.springs = _springs(scene, self.blocks)
-        self.held_by, self.meets = _held_by(scene), _meets(scene, self.blocks)
-        self.start = _start(scene)
-        self.names = placed.union(self.blocks, self.turning, *(wall.names for wall in self.walls))
+        self.carried = {name: self.parts.carriers.get(name, "") for name in self.rods}
+        self.upright = any(name in self.parts.weights for name in self.bodies)
+        self.held_by, self.meets, self.rough = _held_by(scene), _meets(scene, self.bodies), _rough(scene)
+        movers = {"x", "", *self.bodies}
+        self.ties = [(tie, *value_of(tie.spring)) for tie in self.parts.ties if {tie.first, tie.second} <= movers]
+        self.layout = self._lay_out()
+        needed = [wall.names for wall in self.walls] + [names for _, names in self.rods.values()] + [tie[2] for tie in self.ties]
+        known = {type(q).__name__ for q in scene.coordinates} | set(scene.parameters)
+        self.names = placed.union(self.bodies, self.rods, *needed) & known
+
+    def _lay_out(self):
+        tied = {tie.second for tie, *_ in self.ties}
+        held = {tie.first for tie, *_ in self.ties if not tie.second}
+        balls = {name for name in self.meets if name not in tied | held}
+        hanging = [not self.stands[name] for name, carrier in self.carried.items() if carrier]
+        dials = sum(not carrier for carrier in self.carried.values())
+        return lay_out(
+            self.bodies, upright=self.upright, hangs=hanging[0] if hanging else None, tied=tied, meets=self.meets, held=held,
+            balls=balls, start=self.start, dials=dials,
+        )  # fmt: skip
 
     def __call__(self, axes, **state):
-        state = {**self.start, **state}
-        s = self._frame(axes)
-        u, offset = s.u, {"x": 0.0}
-        half = {"x": 1.5 * u} | dict.fromkeys(self.blocks, WIDE / 2)
-        for place, name in enumerate(self.blocks):
-            if name in self.meets:
-                before, gap = self.meets[name]
-                offset[name] = offset[before] + half[before] + half[name] + gap
-            else:
-                offset[name] = (0.8 + place) * APART + clearance(state["x"], state[name])
-        at = {name: state[name] + away for name, away in offset.items()}
+        state = {**self.values, **self.start, **state}
+        rods = {name: self._rod(name, state) for name in self.rods}
+        s = self.layout.sketch(axes, max([abs(rod) for rod, true in rods.values() if true], default=0.0))
+        origin = self.layout.origins(state, s.u)
+        at = {name: state[name] + zero for name, zero in origin.items()}
         for outline in self.outlines:
             outline.draw(s, state)
         for wall in self.walls:
             if wall.mover in at and wall.names <= set(state):
-                self._wall(s, wall, offset[wall.mover] + wall.side * half[wall.mover], state)
-        self._ties(s, state["x"])
-        for first, second in self.springs:
-            s.spring((at[first] + half[first], 0), (at[second] - half[second], 0))
-        for name in self.blocks:
-            s.block((at[name], 0), WIDE / u, 12)
-            s.coordinate(_letters(name), state[name], -11 * u, origin=offset[name])
-        self._turning(s, at, state)
-        s.handle(state["x"])
+                self._wall(s, wall, origin[wall.mover], at[wall.mover], state)
+        self._hold(s, state["x"])
+        for tie, stiffness, _ in self.ties:
+            self._tie(s, tie, stiffness(state), origin, at)
+        for name in self.bodies:
+            self._body(s, name, at[name])
+            self._coordinate(s, name, state[name], origin[name])
+        self._turning(s, at, state, rods)
+        self._weight(s)
+        sides = {wall.side for wall in self.walls if wall.mover == "x"}
+        side = 0 if len(sides) == 2 else min(sides, default=1)
+        hangs = self.layout.hangs
+        below = 15.0 if self.upright else 9.2 if hangs is None else 13.0 if hangs else 8.0
+        s.handle(state["x"], side=side, up=-1 if hangs else 1, below=below)
 
-    def _frame(self, axes):
-        dials = sum(not carrier for carrier in self.turning.values())
-        right = REACH + APART * (len(self.blocks) + 0.3 * bool(self.blocks)) + 0.04 * dials
-        high = 0.022 * (right + REACH) / 0.12
-        low = 2.0 * high if any(self.turning.values()) else 1.2 * high
-        top = low if any(self.turning[name] and self.stands[name] for name in self.turning) else high
-        return Sketch(axes, -REACH, right, -low, top)
+    def _wall(self, s, wall, origin, at, state):
+        u, half = s.u, wall.side * self.layout.half[wall.mover] * s.u
+        face = FACE if wall.mover == "x" else self._height(wall.mover) / 2
+        s.wall(wall.where(state)[0] + origin + half, at + half, wall.side, face * u, _letters(wall.label))
 
-    def _ties(self, s, x):
+    def _hold(self, s, x):
         """Draw what holds the handle itself, to the left of it."""
-        u, place = s.u, s.left + 4 * s.u
+        u, place = s.u, s.ends[0] + 3 * s.u
         if self.held_by:
-            s.ground((place, -4.5 * u), (place, 4.5 * u), depth=-1.5)
+            s.ground((place, 4.5 * u), (place, -4.5 * u))
         if "spring" in self.held_by:
-            s.spring((place, 2.8 * u), (x - 1.5 * u, 2.8 * u), height=1.2)
+            alone = {"carries": "F"} if len(self.held_by) == 1 else {}
+            s.spring((place, 3.2 * u), (x - 1.4 * u, 3.2 * u), _symbol(self.held_by["spring"]), up=2.6, **alone)
         if "damper" in self.held_by:
-            s.damper((place, 0.0), (x - 1.5 * u, 0.0), height=1.2)
+            s.damper((place, 0.0), (x - 1.4 * u, 0.0), _symbol(self.held_by["damper"]), up=-2.6)
+
+    def _level(self, name):
+        """Height at which a body's middle is [u]."""
+        followed = [tie.first for tie, *_ in self.ties if tie.second == name and tie.first != "x"]
+        return RAISED if any(first in self._grounded() for first in followed) else 0.0
+
+    def _grounded(self):
+        return {tie.first for tie, *_ in self.ties if not tie.second and tie.first != self.bodies[-1]}
+
+    def _height(self, name):
+        """Height of a body across its row [u]."""
+        if self.layout.hangs is not None or self._level(name):
+            return 8.0
+        return 19.0 if name in self._grounded() else 22.0 if self.layout.half[name] < 1 else 12.0
+
+    def _tie(self, s, tie, stiffness, origin, at):
+        """Draw a spring, a damper or both from a mover to the next, or to the ground."""
+        u, half = s.u, self.layout.half
+        start, end = at[tie.first] + half[tie.first] * u, 0.0
+        level = self._level(tie.second) if tie.second else 0.0
+        if tie.second:
+            end, zero = at[tie.second] - half[tie.second] * u, origin[tie.second] - half[tie.second] * u
+        else:
+            reach = self.layout.reach if tie.first == self.bodies[-1] else 0.02
+            end = zero = origin[tie.first] + half[tie.first] * u + 7 * u + reach
+            level = LOW if tie.first in self._grounded() else 0.0
+            s.ground((end, (level - 4.5) * u), (end, (level + 4.5) * u))
+        rest = zero - origin[tie.first] - half[tie.first] * u
+        carries = {"carries": "F"} if tie.first == "x" else {"k": stiffness, "rest": rest}
+        names = _symbol(tie.spring), _symbol(tie.damper)
+        if tie.spring is not None and tie.damper is not None:
+            s.pair((start, level * u), (end, level * u), *names, apart=3.8 if level else 4.6, **carries)
+        elif tie.spring is not None:
+            s.spring((start, level * u), (end, level * u), names[0], **carries)
+        else:
+            s.damper((start, level * u), (end, level * u), names[1])
+
+    def _body(self, s, name, at):
+        u, half, level = s.u, self.layout.half[name], self._level(name)
+        word = _symbol(self.parts.masses.get(name))
+        if name in self.meets and not any(name in (tie.first, tie.second) for tie, *_ in self.ties):
+            s.disc((at, level * u), half * u, name=name)
+            s.text((at, level * u), word)
+        else:
+            s.block((at, level * u), 2 * half, self._height(name), word if half > 1 else "", name=name)
+            if half < 1:
+                s.text((at, -self._height(name) / 2 * u), word, up=-2.0)
+        if name in self.parts.drives:
+            self._drive(s, self.parts.drives[name], at, (level + self._height(name) / 2) * u)
+        if name in self.rough:
+            self._floor(s, at, half, name)
+        elif self.layout.hangs is not None and name in self.carried.values():
+            s.ground((at - 8.5 * u, -4.6 * u), (at + 10 * u, -4.6 * u))
+
+    def _drive(self, s, force, at, top):
+        """Draw a force that depends on time, above its body."""
+        u = s.u
+        s.line((at, top), (at, top + 1.4 * u), width=1.0)
+        word = sp.latex(force) if sp.count_ops(force) <= 4 else "F(t)"
+        s.arrow((at, top + 1.4 * u), (at + 7 * u, top + 1.4 * u), f"${word}$", right=6.5, up=0.0)
 
     @staticmethod
-    def _wall(s, wall, away, state):
-        place, high = wall.where(state)[0] + away, 6.8 * s.u
-        end = s.right if wall.side > 0 else s.left
-        if (end - place) * wall.side > 0:
-            s.area([(place, -high), (end, -high), (end, high), (place, high)], color=WALL, edge="none", zorder=1)
-        s.ground((place, wall.side * high), (place, -wall.side * high), depth=-1.5)
-        s.text((place, -12.2 * s.u), _letters(wall.label))
+    def _floor(s, at, half, name):
+        """Draw a rough floor below a body, and its friction."""
+        u, floor = s.u, -6.0 * s.u
+        rough = np.arange(at - 1.6 * half * u, at + 2 * half * u, 0.8 * u)
+        s.line(*np.column_stack([rough, floor - 0.3 * u * (1 + (-1.0) ** np.arange(len(rough)))]).tolist(), width=1.0, color=SOFT)
+        s.ground((at - 1.6 * half * u, floor - 0.6 * u), (at + 2 * half * u, floor - 0.6 * u))
 
-    def _turning(self, s, at, state):
+    def _coordinate(self, s, name, value, origin):
+        place = self.bodies.index(name)
+        hangs, rough = self.layout.hangs, name in self.rough
+        below = 18.5 + 3.5 * place if self.upright else 9.6 if rough else 9.2 if hangs is None else -6.2 if hangs else 8.0
+        s.coordinate(_letters(name), value, -(below if not self._grounded() or self.upright else 11.0) * s.u, origin=origin)
+
+    def _rod(self, name, state):
+        """Length of a pendulum, and whether that is true or only drawn so."""
+        try:
+            rod = self.rods[name][0](state)
+        except (KeyError, TypeError, ValueError, ZeroDivisionError):
+            rod = None
+        return (rod, True) if rod and np.isfinite(rod) else (1.0, False)
+
+    def _turning(self, s, at, state, rods):
         """Draw what turns: hanging from or standing on what carries it, else a dial."""
-        free = s.right
-        for name, carrier in self.turning.items():
-            turn, u = state[name], s.u
+        free, u = s.right, s.u
+        for name, carrier in self.carried.items():
+            turn, (rod, true) = state[name], rods[name]
             if carrier in at:
+                rod = rod if true else np.sign(rod) * 0.9 * ROD * u
                 pivot, rest = np.array([at[carrier], 0.0]), (1 if self.stands[name] else -1) * np.pi / 2
-                angle = rest + (turn if rest < 0 else -turn)
-                bob = pivot + 22 * u * np.array([np.cos(angle), np.sin(angle)])
-                s.line(pivot, pivot + [0, np.sign(rest) * 24 * u], width=0.8, color=SOFT, linestyle="--")
-                s.rod(pivot, bob, width=2.5)
-                s.disc(bob, 2.4 * u, zorder=5)
+                angle = rest - np.sign(rest) * np.sign(rod) * turn
+                bob = pivot + abs(rod) * np.array([np.cos(angle), np.sin(angle)])
+                s.line(pivot, pivot + [0, np.sign(rest) * abs(rod)], width=0.8, color=SOFT, linestyle="--")
+                letter = f"${sp.latex(self.parts.rods[name])}$" if true else "not to scale"
+                aside = 2.6 if np.cos(angle) >= 0 else -2.6
+                s.rod(pivot, bob, letter, right=aside, width=2.5)
+                s.disc(bob, 1.9 * u, zorder=5, name=name)
+                s.text(bob, f"${sp.latex(self.parts.bobs.get(name, ''))}$", right=4.2)
                 s.pin(pivot)
-                s.angle(pivot, 14, rest, angle, _letters(name))
+                s.angle(pivot, 0.45 * abs(rod) / u, rest, angle, _letters(name))
             else:
-                free -= 0.04
-                s.disc((free + 0.02, 0), 0.015, np.pi / 2 - turn)
-                s.text((free + 0.02, -0.015), _letters(name), up=-2.8)
+                free -= DIAL * u
+                s.disc((free + 0.5 * DIAL * u, 0), 0.42 * DIAL * u, np.pi / 2 - turn)
+                s.text((free + 0.5 * DIAL * u, -0.42 * DIAL * u), _letters(name), up=-2.4)
+
+    def _weight(self, s):
+        """Draw which way a weight pulls."""
+        u, words = s.u, [f"${sp.latex(w)}$" for w in self.parts.weights.values() if sp.count_ops(w) == 0]
+        if self.upright:
+            top = s.ends[1] - 2 * u
+            s.arrow((top, -6 * u), (top - 5 * u, -6 * u), words[0] if words else "$g$")
+        elif self.layout.hangs is not None:
+            place = s.right - 4 * u
+            s.arrow((place, s.top - 4 * u), (place, s.top - 9 * u), "$g$", right=2.2, up=1.0)
+
+
+def _row(names):
+    """Return what is drawn of a long row that nobody looked into: each tied to the one before."""
+    return Elements(ties=[Tie(first, second, sp.S.Zero) for first, second in zip(["x", *names], names, strict=False)])
 
 
 def _start(scene):
@@ -137,6 +245,11 @@ def _start(scene):
         except (KeyError, TypeError, ValueError, ZeroDivisionError, NotImplementedError):
             continue
     return start
+
+
+def _symbol(part):
+    """Return a coefficient as it is set; nothing where it has none, or a long one."""
+    return f"${sp.latex(part)}$" if part is not None and part != 0 and sp.count_ops(part) <= 2 else ""
 
 
 @cache
@@ -153,13 +266,6 @@ def _chain(scene, lengths):
         order.append(next((q for q in waiting if _coupled(scene, last, q)), waiting[0]))
         waiting.remove(order[-1])
     return order
-
-
-def _springs(scene, names):
-    """Return the pairs (left, right) of neighbours that pull on each other: the handle's name is x."""
-    by_name = {"x": x(t)} | {type(q).__name__: q for q in scene.coordinates}
-    row = ["x", *names]
-    return [pair for pair in zip(row, row[1:], strict=False) if _coupled(scene, *(by_name[name] for name in pair))]
 
 
 def _meets(scene, names):
@@ -180,7 +286,7 @@ def _coupled(scene, first, second):
     if len(scene.coordinates) > LOOKED_AT:
         return True
     if first == x(t):
-        return _apart(scene.force).has(second) or any(expr.has(x, v) for expr in _acting(scene, second))
+        return apart(scene.force).has(second) or any(expr.has(x, v) for expr in _acting(scene, second))
     return any(expr.has(first) for expr in _acting(scene, second)) or any(expr.has(second) for expr in _acting(scene, first))
 
 
@@ -192,40 +298,26 @@ def _acting(scene, q):
         return ()
     if q not in form.coordinates:
         return ()
-    return (_apart(form.f[form.coordinates.index(q)]),)
-
-
-def _apart(expr):
-    """Return a force without what acts in cases alone, as walls and contacts do."""
-    expr = expr.doit()
-    return expr.xreplace(dict.fromkeys(expr.atoms(sp.Piecewise, sp.Max, sp.Min), sp.S.Zero))
+    return (apart(form.f[form.coordinates.index(q)]),)
 
 
 def _held_by(scene):
-    """The elements between the handle and the ground, "spring" and "damper", wherever it is.
+    """The coefficients of the elements between the handle and the ground, of "spring" and "damper".
 
     A force that a shift of everything changes is a spring; one that a speed of the handle changes is a damper.
     """
-    force, past, speed = _apart(scene.force), sp.Symbol("past"), sp.Symbol("speed")
+    force, past, speed = apart(scene.force), sp.Symbol("past"), sp.Symbol("speed")
     lengths = [q for q in scene.coordinates if type(q).unit == "m"]
     samples = {sample: sp.Symbol("x") - (n - sample.args[0]) * past for sample in force.atoms(x) if sample.args[0] != t}
     force = force.xreplace({**samples, x(t): sp.Symbol("x"), **dict.fromkeys(force.atoms(v), speed)})
     shifted = force.xreplace(dict.fromkeys([*lengths, sp.Symbol("x")], sp.Symbol("shift")))
-    ties = [("spring", sp.Symbol("shift"), shifted), ("damper", speed, force), ("damper", past, force)]
-    return {tie for tie, by, acts in ties if not sp.expand(acts.diff(by)).is_zero and not (tie == "damper" and lengths)}
-
-
-def _carrier(scene, q):
-    """The body an angle's pivot moves with: a coordinate in metres whose inertia it shares, the handle, or ""."""
-    try:
-        form = scene.explicit()
-    except HapticlabError:
-        return ""
-    if len(form.coordinates) > LOOKED_AT or q not in form.coordinates:
-        return ""
-    row = form.M[form.coordinates.index(q)]
-    shared = [type(p).__name__ for p, m in zip(form.coordinates, row, strict=True) if type(p).unit == "m" and m.doit() != 0]
-    return shared[0] if shared else ""
+    ties, found = [("spring", sp.Symbol("shift"), shifted), ("damper", past, force), ("damper", speed, force)], {}
+    for tie, by, acts in ties:
+        slope = sp.expand(acts.diff(by))
+        if not slope.is_zero and not (tie == "damper" and lengths):
+            period = next((s for s in slope.free_symbols if s.name == "T"), sp.S.One) if by == past else sp.S.One
+            found[tie] = sp.simplify(slope * period)
+    return found
 
 
 def _stands(scene, q):
@@ -236,3 +328,10 @@ def _stands(scene, q):
         return moment({**dict.fromkeys(names, 0.0), **scene.values, type(q).__name__: 0.01})[0] > 0
     except (TypeError, NotImplementedError, KeyError, ZeroDivisionError, IndexError):
         return False
+
+
+def _rough(scene):
+    """Return the coordinates whose rate is rubbed by a floor at rest."""
+    listed = [contact for entry in scene.eom for contact in getattr(entry, "contacts", ()) if isinstance(contact, friction)]
+    slips = [one.slip.doit() if hasattr(one.slip, "doit") else one.slip for one in listed]
+    return {type(q).__name__ for q in scene.coordinates if q.diff(t) in slips}

@@ -22,8 +22,15 @@ class Picture {
   constructor(canvas, about) {
     this.canvas = canvas
     this.context = canvas.getContext("2d")
-    this.box = about.box // left, right, bottom, top [m]
+    this.along = about.along
     this.ink = new Map()
+    this.labels = new Labels(this)
+    this.show(about.box)
+  }
+
+  show(box) {
+    this.box = box // left, right, bottom, top [m]
+    if (this.width) this.scaleToFit()
   }
 
   // Take so much room [px]; without a height, as much as the picture needs of it.
@@ -32,11 +39,16 @@ class Picture {
     this.width = width
     const most = Math.min(Math.max(0.4 * window.innerHeight, 160), 300)
     this.height = height || Math.min(Math.max((width * (top - bottom)) / (right - left), 130), most)
-    this.font = `${Math.round(Math.min(Math.max(width / 60, 12), 16))}px system-ui, sans-serif`
     fit(this.canvas, this.width, this.height)
-    this.scale = Math.min(width / (right - left), (this.height - AXIS) / (top - bottom))
-    this.left = width / 2 - (this.scale * (left + right)) / 2
+    this.scaleToFit()
+  }
+
+  scaleToFit() {
+    const [left, right, bottom, top] = this.box
+    this.scale = Math.min(this.width / (right - left), (this.height - AXIS) / (top - bottom))
+    this.left = this.width / 2 - (this.scale * (left + right)) / 2
     this.base = (this.height - AXIS) / 2 + (this.scale * (bottom + top)) / 2
+    this.size = Math.round(Math.min(Math.max(this.height / 14, 13), 18)) // of letters [px]
   }
 
   x(metres) {
@@ -49,20 +61,57 @@ class Picture {
 
   // Show items at points [m], where ``state`` is what is known of the moment: F [N], x, intent [m], contact, running.
   draw(shape, points, theme, state = {}) {
-    this.state = state
     const context = this.context
-    context.clearRect(0, 0, this.width, this.height)
     this.theme = theme
-    this.drawScale()
+    this.F = state.F
+    this.full = undefined
+    this.labels.begin()
+    for (let item = 0, at = 0; item < shape.length; at += shape[item++][1]) {
+      const [kind, , style] = shape[item]
+      if (kind === "frame") this.frame(points.subarray(2 * at))
+      if (kind === "force") this.full = style.full
+    }
+    context.clearRect(0, 0, this.width, this.height)
+    context.lineCap = context.lineJoin = "round"
     let at = 0
-    for (const item of shape) {
-      const count = item[1]
-      DRAWN[item[0]](this, context, points.subarray(2 * at, 2 * (at + count)), item)
+    for (const [kind, count, style] of shape) {
+      const place = points.slice(2 * at, 2 * (at + count))
+      for (let i = 0; i < place.length; i += 2) {
+        place[i] = this.x(place[i])
+        place[i + 1] = this.y(place[i + 1])
+      }
+      PARTS[kind]?.(this, place, style)
+      if (style.name) this.seek(kind, place, style.name)
       at += count
     }
+    this.drawScale()
+    this.labels.write()
   }
 
-  // How long a length is: heights and widths are to the same scale.
+  // What a picture shows may grow: a rod that gets longer stays in it.
+  frame([left, bottom, right, top]) {
+    const [l, r, b, t] = this.box
+    if (Math.abs(l - left) + Math.abs(r - right) + Math.abs(b - bottom) + Math.abs(t - top) > 1e-6) this.show([left, right, bottom, top])
+  }
+
+  // Mark at the rim where a body is that left the picture.
+  seek(kind, place, name) {
+    let [x, y] = place
+    if (kind === "area") {
+      x = (place[0] + place[4]) / 2
+      y = (place[1] + place[5]) / 2
+    }
+    const floor = this.height - AXIS
+    if (x >= 0 && x <= this.width && y >= 0 && y <= floor) return
+    const [rx, ry] = [Math.min(Math.max(x, RIM), this.width - RIM), Math.min(Math.max(y, RIM), floor - RIM)]
+    const away = Math.hypot(x - rx, y - ry)
+    const [ux, uy] = [(x - rx) / away, (y - ry) / away]
+    arrow(this, rx - 14 * ux, ry - 14 * uy, rx + (RIM - 2) * ux, ry + (RIM - 2) * uy, WARM)
+    const words = `$${TEX[name] || name}$ is ${tidy(Math.round((1000 * away) / this.scale))} mm away`
+    this.labels.add(words, INK, rx - 14 * ux, ry - 14 * uy, rx - 30 * ux, ry - 30 * uy)
+  }
+
+  // How long a length is, and which force a colour tells.
   drawScale() {
     const context = this.context
     const length = niceStep(this.width / this.scale / 12)
@@ -84,92 +133,35 @@ class Picture {
     context.lineTo(right, line + 4)
     context.stroke()
     context.fillText(`${tidy(1000 * length)} mm`, left - 6, line)
+    if (!this.full) return
+    context.textAlign = "left"
+    context.fillText("force 0", 10, line)
+    const from = 16 + context.measureText("force 0").width
+    for (let k = 0; k < LEVELS; k++) {
+      context.fillStyle = this.forceColour((k / (LEVELS - 1)) * this.full)
+      context.fillRect(from + 4 * k, line - 4, 4, 8)
+    }
+    context.fillStyle = this.theme.quiet
+    context.fillText(`${tidy(this.full)} N`, from + 4 * LEVELS + 6, line)
   }
 
   colour(colour) {
     return this.theme.dark ? onDark(this.ink, this.context, colour) : colour
   }
+
+  // From ink at no force to orange at the full one; a small force is seen, too.
+  forceColour(force) {
+    const level = this.full ? Math.round(Math.sqrt(Math.min(Math.abs(force || 0) / this.full, 1)) * (LEVELS - 1)) : 0
+    return this.colour(FORCES[level])
+  }
 }
 
 const FONT = "12px system-ui, sans-serif"
 const AXIS = 20 // [px] below the picture, for its scale
-
-function trace(picture, context, points) {
-  context.beginPath()
-  for (let i = 0; i < points.length; i += 2) context.lineTo(picture.x(points[i]), picture.y(points[i + 1]))
-}
-
-const DRAWN = {
-  line(picture, context, points, [, , width, colour, dash]) {
-    trace(picture, context, points)
-    context.lineWidth = width
-    context.setLineDash(dash || [])
-    context.strokeStyle = picture.colour(colour)
-    context.stroke()
-  },
-
-  area(picture, context, points, [, , fill, edge]) {
-    trace(picture, context, points)
-    context.closePath()
-    if (fill && fill !== "none") {
-      context.fillStyle = picture.colour(fill)
-      context.fill()
-    }
-    if (!edge || edge === "none") return
-    context.lineWidth = 1.5
-    context.setLineDash([])
-    context.strokeStyle = picture.colour(edge)
-    context.stroke()
-  },
-
-  text(picture, context, points, [, , string, colour]) {
-    context.font = picture.font
-    context.textAlign = "center"
-    context.textBaseline = "middle"
-    const half = context.measureText(string).width / 2
-    const x = Math.min(Math.max(picture.x(points[0]), half + 2), picture.width - half - 2)
-    write(picture, string, x, Math.min(Math.max(picture.y(points[1]), 10), picture.height - 10), colour)
-  },
-
-  arrow(picture, context, points, [, , colour, label]) {
-    const [x0, y0, x1, y1] = [picture.x(points[0]), picture.y(points[1]), picture.x(points[2]), picture.y(points[3])]
-    const length = Math.hypot(x1 - x0, y1 - y0)
-    context.fillStyle = context.strokeStyle = picture.colour(colour)
-    if (length > 1) {
-      const head = Math.min(12, length)
-      const [ux, uy] = [(x1 - x0) / length, (y1 - y0) / length]
-      const [bx, by] = [x1 - head * ux, y1 - head * uy]
-      context.lineWidth = 4
-      context.setLineDash([])
-      context.beginPath()
-      context.moveTo(x0, y0)
-      context.lineTo(bx, by)
-      context.stroke()
-      context.beginPath()
-      context.moveTo(x1, y1)
-      context.lineTo(bx - 0.5 * head * uy, by + 0.5 * head * ux)
-      context.lineTo(bx + 0.5 * head * uy, by - 0.5 * head * ux)
-      context.fill()
-    }
-    if (!label) return
-    context.font = "bold " + picture.font
-    context.textAlign = x1 < x0 ? "right" : "left"
-    context.textBaseline = "bottom"
-    write(picture, label, Math.min(Math.max(x1, 60), picture.width - 60), y1 - 8, colour)
-  },
-}
-
-// Write a text on a rim of paper, so that lines under it do not strike it through.
-function write(picture, string, x, y, colour) {
-  const context = picture.context
-  context.setLineDash([])
-  context.lineWidth = 4
-  context.lineJoin = "round"
-  context.strokeStyle = picture.theme.paper
-  context.strokeText(string, x, y)
-  context.fillStyle = picture.colour(colour)
-  context.fillText(string, x, y)
-}
+const RIM = 16 // [px] from the rim to the mark of what is beyond it
+const LEVELS = 12 // of the colour of a force
+const FORCES = Array.from({ length: LEVELS }, (_, k) => "#" + [0xcc, 0x5a, 0x1a].map((part) => Math.round((part * k) / (LEVELS - 1)).toString(16).padStart(2, "0")).join(""))
+const TEX = { theta: "\\theta", phi: "\\varphi", psi: "\\psi", alpha: "\\alpha", beta: "\\beta" }
 
 function fit(canvas, width, height) {
   const ratio = window.devicePixelRatio || 1

@@ -238,7 +238,9 @@ class View {
     }
     if (!frame || this.closed) return
     const theme = this.theme(now)
-    this.picture.draw(frame.shape, between(frame, next, part), theme)
+    const [, x, F, , intent] = frame.rows.subarray(frame.rows.length - COLUMNS)
+    if (frame.rows.length) this.state = { x, F, intent }
+    this.picture.draw(frame.shape, between(frame, next, part), theme, { ...this.state, running: this.flags.running })
     if (!(now - this.tracedAt < TRACED / 1000) || !frame.rows.length) {
       this.tracedAt = now
       this.traces.draw(part && next ? frame.time + part * (next.time - frame.time) : frame.time, theme)

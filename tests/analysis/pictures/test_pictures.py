@@ -9,11 +9,11 @@ from hapticlab import n
 from hapticlab.analysis.pictures.pictures import drawing_of
 from hapticlab.analysis.pictures.schematic import Schematic
 from hapticlab.analysis.pictures.shape_outlines import Outline
-from hapticlab.base.drawing import new_figure
+from hapticlab.library.display_list import DisplayList
 from hapticlab.library.entries import CATALOGUE
-from hapticlab.library.sketch import BODY, HANDLE, Sketch
-from hapticlab.widgets.picture_items import RecordingAxes
+from hapticlab.library.sketch import Sketch
 
+MEDIUM = (233 / 255, 235 / 255, 238 / 255, 1.0)
 #: parameters that a picture does not name: constants of nature, losses, starts
 UNNAMED = {"c", "B", "theta_0", "A", "k", "k_3", "k_w", "e", "F_s", "F_c", "alpha", "g", "p", "Omega", "P", "F_0", "w"}
 GREEK = {
@@ -47,63 +47,73 @@ def test_a_picture_shows_handle_and_symbols_apart_from_each_other(name, state):
     assert "handle" in words and "$x$" in words
     scene = CATALOGUE[name].scene()
     for symbol in {type(q).__name__ for q in scene.coordinates} | (set(scene.parameters) - UNNAMED):
-        assert GREEK.get(symbol, symbol) in words, symbol
+        assert GREEK.get(symbol, symbol) in words.replace("{", "").replace("}", ""), symbol
     frame = figure.bbox
     for k, (text, box) in enumerate(shown):
         assert frame.x0 <= box.x0 and box.x1 <= frame.x1 and frame.y0 <= box.y0 and box.y1 <= frame.y1, text
         for other, near in shown[k + 1 :]:
             assert not box.overlaps(near), (text, other)
     title = figure.axes[0].title.get_window_extent()
-    drawn = [box for _, box in shown] + [body.get_window_extent() for body in figure.axes[0].patches]
+    ended = [body for body in figure.axes[0].patches if body.get_facecolor() != MEDIUM]
+    drawn = [box for _, box in shown] + [body.get_window_extent() for body in ended]
     assert title.y0 > max(box.y1 for box in drawn)
     assert min(box.x0 for box in drawn) >= frame.x0 and max(box.x1 for box in drawn) <= frame.x1
     assert min(box.y0 for box in drawn) >= frame.y0
 
 
-def bodies(figure):
-    """Return the corners (left, bottom, right, top) of what is filled."""
-    outlines = [np.asarray(patch.get_xy()) for patch in figure.axes[0].patches]
-    return [(*outline.min(axis=0), *outline.max(axis=0)) for outline in outlines]
+def drawn(scene, **state):
+    """Return what is drawn of a scene in a state: a dict of kind to a list of (points, style)."""
+    scene = CATALOGUE[scene].scene() if isinstance(scene, str) else scene
+    kept, found = DisplayList(), {}
+    drawing_of(scene)(kept, **{"x": 0.0, **scene.values, **state})
+    for kind, points, style in kept.items:
+        found.setdefault(kind, []).append((np.array(points), style))
+    return found
+
+
+def body(found, name=""):
+    """Return the ends (left, bottom), (right, top) of the first body, or of the one of a name."""
+    points = next(points for points, style in found["area"] if style.get("name") and name in ("", style["name"]))
+    return points.min(axis=0), points.max(axis=0)
 
 
 @pytest.mark.parametrize(
     ("name", "state"), [("mass_spring_damper", {"z": 0}), ("two_masses", {"z_1": 0}), ("tuned_absorber", {"z_1": 0})]
 )
 def test_the_handle_stays_out_of_the_mass(name, state):
-    handle, mass = bodies(hl.mechanics.picture(name, x=0.04, **state))[:2]
-    assert handle[0] < 0.04 < handle[2] < mass[0] - 0.01
+    found = drawn(name, x=0.04, **state)
+    (left, _), _ = body(found)
+    face = found["handle"][0][0][0]
+    assert face[0] == 0.04 < left - 0.01
 
 
 def test_wheels_stay_on_the_ground_and_the_plate_is_tilted():
-    axes = hl.mechanics.picture("rolling", z=-0.04, x=-0.03).axes[0]
-    wheels = [box for box in bodies(axes.figure) if 0.006 < box[2] - box[0] < 0.008 and box[1] < -0.012]
-    ground = next(line for line in axes.lines if line.get_linewidth() == 1.6)
+    found = drawn("rolling", z=-0.04, x=-0.03)
+    (start, end), _ = found["ground"][0]
+    wheels = [centre for (centre, rim), _ in found["disc"] if 0.002 < np.hypot(*(rim - centre)) < 0.006 and centre[1] < 0]
     assert len(wheels) == 3
-    assert ground.get_xdata()[0] < min(box[0] for box in wheels)
-    assert ground.get_xdata()[1] > max(box[2] for box in wheels)
-    (start, end) = next(
-        line.get_xydata() for line in hl.mechanics.picture("rolling", alpha=0.2).axes[0].lines if line.get_linewidth() == 1.6
-    )
+    assert all(start[0] < x - 0.004 and x + 0.004 < end[0] for x, _ in wheels)
+    start, end = drawn("rolling", alpha=0.2)["ground"][0][0]
     assert np.arctan2(*(end - start)[::-1]) == pytest.approx(0.2, abs=1e-12)
 
 
 @pytest.mark.parametrize("k", [20, 150, 600])
 def test_the_wall_of_a_fixture_rises_to_the_edge_and_its_well_stays_above_the_letters(k):
-    axes = hl.mechanics.picture("virtual_fixture", k=k).axes[0]
-    at, U = next(line for line in axes.lines if len(line.get_xdata()) == 801).get_data()
-    wall = U[at > 0.0351]
+    ((left, level), (right, _)), style = drawn("virtual_fixture", k=k)["track"][0]
+    U = level + np.array(style["heights"])
+    wall = U[np.linspace(left, right, len(U)) > 0.0355][::8]
     assert np.all(np.diff(wall, 2) > 0)  # a parabola, no plateau
-    assert U.min() >= -0.0091
+    assert U.min() >= -0.0056
 
 
-@pytest.mark.parametrize("entry", CATALOGUE.values(), ids="{0.name}".format)
-def test_a_picture_moves_with_its_handle(entry):
-    figure = new_figure(height=1)
-    axes = figure.subplots(2)
-    for x, one in zip((0.0, 0.03), axes, strict=True):
-        entry.draw(one, x=x)
-    (here, there) = ([np.asarray(patch.get_xy()) for patch in one.patches] for one in axes)
-    assert any(not np.array_equal(a, b) for a, b in zip(here, there, strict=True))
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_a_picture_moves_with_its_handle_whose_face_is_at_x(name):
+    here, there = (drawn(name, x=x) for x in (0.0, 0.02))
+    way = there["handle"][0][0][0] - here["handle"][0][0][0]
+    upright = name == "ball_on_the_paddle"
+    assert way[int(upright)] == pytest.approx(0.02, abs=1e-12)
+    if not upright:
+        assert there["handle"][0][0][0][0] == 0.02
 
 
 def test_what_a_picture_does_not_know_is_refused():
@@ -127,40 +137,38 @@ def test_what_a_picture_does_not_know_is_refused():
 k, x_o, x_1 = hl.parameters("k x_o x_1", units="N/m m m", values=(300, 0.01, -0.02))
 
 
-def outline_of(figure, colour):
-    """Return the ends (left, right) of the one area of a colour [m]."""
-    from matplotlib.colors import to_hex
-
-    (found,) = (patch for patch in figure.axes[0].patches if to_hex(patch.get_facecolor()) == colour)
-    return np.asarray(found.get_xy())[:, 0].min(), np.asarray(found.get_xy())[:, 0].max()
-
-
-def hatched(figure):
-    """Return the places x of the upright lines that are drawn as ground [m]."""
-    lines = [line.get_xdata() for line in figure.axes[0].lines if line.get_linewidth() == 1.6]
-    return sorted(xs[0] for xs in lines if xs[0] == xs[-1])
+def faces(found):
+    """Return the places [m] where walls begin."""
+    return sorted(points[0][0] for points, _ in found["wall"])
 
 
 @pytest.mark.parametrize("law", ["zoh", "ellis", "half_sample"])
 @pytest.mark.parametrize("unilateral", ["gate", "clip"])
 def test_the_handles_face_meets_the_wall_where_the_force_begins(law, unilateral):
     for place in (0.01, -0.012):
-        figure = hl.mechanics.picture(hl.wall(law, unilateral=unilateral)(k=300, x_o=place), x=place)
-        assert hatched(figure) == [pytest.approx(outline_of(figure, HANDLE)[1], abs=1e-12)]
+        found = drawn(hl.wall(law, unilateral=unilateral)(k=300, x_o=place), x=place)
+        face, back, _ = found["handle"][0][0]
+        assert faces(found) == [place] and face[0] == place > back[0]
+        pressed = drawn(hl.wall(law, unilateral=unilateral)(k=300, x_o=place), x=place + 0.003)
+        (boundary, meets, far), _ = pressed["wall"][0]
+        assert meets[0] - boundary[0] == pytest.approx(0.003, abs=1e-12) and far[0] > meets[0]
 
 
-def test_walls_to_both_sides_each_hatched_on_its_own():
+def test_walls_to_both_sides_and_a_handle_without_thickness_between_them():
     force = hl.when(hl.x(n) >= x_o, k * (hl.x(n) - x_o)) + hl.when(hl.x(n) <= x_1, k * (hl.x(n) - x_1))
-    figure = hl.mechanics.picture(hl.Scene(force=force))
-    left, right = hatched(figure)
-    half = np.diff(outline_of(figure, HANDLE))[0] / 2
-    assert (left, right) == (pytest.approx(-0.02 - half, abs=1e-12), pytest.approx(0.01 + half, abs=1e-12))
-    assert "$x_{o}$" in words(figure) and "$x_{1}$" in words(figure)
+    found = drawn(hl.Scene(force=force), x=0.004)
+    assert faces(found) == [-0.02, 0.01]
+    face, back, _ = found["handle"][0][0]
+    assert face[0] == back[0] == 0.004
+    assert {"$x_{o}$", "$x_{1}$"} <= letters(found)
     assert Schematic(hl.laws.virtual_damper()).walls == ()
+    left = hl.Scene(force=hl.when(hl.x(n) <= x_1, k * (hl.x(n) - x_1)))
+    face, back, _ = drawn(left, x=-0.021)["handle"][0][0]
+    assert face[0] == -0.021 < back[0]
 
 
-def words(figure):
-    return {text.get_text() for text in figure.axes[0].texts}
+def letters(found):
+    return {style["words"] for _, style in found["label"]}
 
 
 def mass_on_a_coupler():
@@ -173,32 +181,60 @@ def mass_on_a_coupler():
 def test_a_mass_meets_its_wall_with_its_own_face():
     z, m, F = mass_on_a_coupler()
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F - hl.when(z >= x_o, k * (z - x_o)))])
-    figure = hl.mechanics.picture(scene, x=0.011, z=0.01)
-    assert hatched(figure) == [pytest.approx(outline_of(figure, BODY)[1], abs=1e-12)]
-    apart = hl.mechanics.picture(scene, x=0.011, z=0.004)
-    assert hatched(apart)[0] - outline_of(apart, BODY)[1] == pytest.approx(0.006, abs=1e-12)
-    assert max(len(line.get_xdata()) for line in apart.axes[0].lines) > 12  # the coupler's spring
+    met = drawn(scene, x=0.011, z=0.01)
+    assert faces(met) == [pytest.approx(body(met)[1][0], abs=1e-12)]
+    apart = drawn(scene, x=0.011, z=0.004)
+    assert faces(apart)[0] - body(apart)[1][0] == pytest.approx(0.006, abs=1e-12)
 
 
-def test_a_pendulum_hangs_from_its_cart_and_a_pole_stands_on_it():
+@pytest.mark.parametrize("divided", [False, True])
+def test_a_mass_of_ones_own_has_spring_damper_and_letters_between_its_bodies(divided):
+    z, m, F = mass_on_a_coupler()
+    equation = sp.Eq(z.diff(hl.t, 2), F / m) if divided else sp.Eq(m * z.diff(hl.t, 2), F)
+    found = drawn(hl.Scene(force=F, eom=[equation], name="my mass"), x=0.012, z=0.02)
+    for kind in ("spring", "damper"):
+        (start, end), style = found[kind][0]
+        assert start[0] == 0.012 and end[0] == pytest.approx(body(found)[0][0], abs=1e-12)
+        assert style["carries"] == "F"
+    assert {"$m$", "$K$", "$b_{c}$", "$z$", "handle"} <= letters(found)
+
+
+def test_a_scene_of_ones_own_is_drawn_as_that_of_the_library():
+    z = hl.coordinate("z", unit="m", initial=hl.x(n))
+    m, K, b_c, b, k = hl.parameters("m K b_c b k", units="kg N/m N*s/m N*s/m N/m", values=(0.1, 200, 0.1, 0.1, 100))
+    F = K * (hl.x(hl.t) - z) + b_c * (hl.v(hl.t) - z.diff(hl.t))
+    mine = hl.Scene(force=F, eom=[sp.Eq(z.diff(hl.t, 2), (F - k * z - b * z.diff(hl.t)) / m)], name="what I made")
+    same, theirs = (drawn(scene, x=0.01, z=0.005) for scene in (mine, "mass_spring_damper"))
+    assert {kind: len(listed) for kind, listed in same.items()} == {kind: len(listed) for kind, listed in theirs.items()}
+    assert letters(same) == letters(theirs)
+    for kind, listed in same.items():
+        for (points, _), (others, _) in zip(listed, theirs[kind], strict=True):
+            np.testing.assert_allclose(points, others, atol=1e-12)
+
+
+@pytest.mark.parametrize("l", [0.1, 0.35])
+def test_a_pendulum_hangs_from_its_cart_and_a_pole_stands_on_it_in_true_length(l):
     z, m, F = mass_on_a_coupler()
     theta = hl.coordinate("theta", unit="rad")
-    l, g = hl.parameters("l g", units="m m/s^2", values=(0.1, 9.81))
-    dz, w = z.diff(hl.t), theta.diff(hl.t)
-    kinetic = m * dz**2 / 2 + m * (dz**2 + 2 * l * dz * w * sp.cos(theta) + (l * w) ** 2) / 2
+    length, g = hl.parameters("l g", units="m m/s^2", values=(0.1, 9.81))
+    bob = m * ((z + length * sp.sin(theta)).diff(hl.t) ** 2 + (length * sp.cos(theta)).diff(hl.t) ** 2) / 2
     for sign, below in ((1, True), (-1, False)):
-        scene = hl.Scene(force=F, eom=[hl.mechanics.lagrange(kinetic + sign * m * g * l * sp.cos(theta), forces={z: F})])
-        figure = hl.mechanics.picture(scene, theta=0.5)
-        rod = next(line.get_xydata() for line in figure.axes[0].lines if line.get_linewidth() == 2.5)
+        energy = m * z.diff(hl.t) ** 2 / 2 + bob + sign * m * g * length * sp.cos(theta)
+        scene = hl.Scene(force=F, eom=[hl.mechanics.lagrange(energy, forces={z: F})])
+        found = drawn(scene, theta=0.5, l=l)
+        rod = next(points for points, style in found["line"] if style["width"] == 2.5)
         reach = rod[-1] - rod[0]
+        assert np.hypot(*reach) == pytest.approx(l, rel=1e-12)
         assert bool(reach[1] < 0) is below
         assert np.arctan2(reach[0], abs(reach[1])) == pytest.approx(0.5, abs=1e-12)
+        assert "$l$" in letters(found) and "$g$" in letters(found)
 
 
 def test_a_scene_of_the_library_is_drawn_as_the_library_does_also_when_bound_anew():
     for entry in CATALOGUE.values():
         scene = entry.scene()
-        assert drawing_of(scene(**dict(scene.values))) is entry.draw
+        drawing = drawing_of(scene(**dict(scene.values)))
+        assert drawing is entry.draw if entry.draw else isinstance(drawing, Schematic)
     assert isinstance(drawing_of(hl.Scene(force=k * hl.x(n), name="detents of my own")), Schematic)
 
 
@@ -212,7 +248,7 @@ def test_a_scene_of_the_library_is_drawn_as_the_library_does_also_when_bound_ane
 )
 def test_an_outline_is_its_radius_away_from_its_core(shape, core, radius):
     z = hl.coordinate("z", unit="m")
-    drawn = RecordingAxes()
+    drawn = DisplayList()
     Outline(shape.at(x=z, y="10 mm", angle=0.4)).draw(Sketch(drawn, -0.06, 0.06, -0.03, 0.03), {"z": 0.013})
     (points,) = (np.array(item[1]) for item in drawn.items if item[0] == "area")
     turned = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
@@ -241,16 +277,21 @@ def distance(point, a, b):
     ],
 )
 def test_what_holds_the_handle_itself_is_tied_to_the_ground(scene, ties):
-    assert Schematic(scene).held_by == ties
+    assert set(Schematic(scene).held_by) == ties
 
 
-def test_a_ball_that_the_handle_strikes_is_tied_to_nothing():
+def test_a_ball_that_the_handle_strikes_is_tied_to_nothing_and_lies_on_it():
     y = hl.coordinate("y", unit="m", initial=0.03)
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.03, 9.81))
     touch = hl.contact.Contact(y - hl.x(hl.t), hl.contact.penalty(k=k), name="touch")
     scene = hl.Scene(force=touch.felt, eom=[hl.mechanics.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=[touch])])
-    drawn = Schematic(scene)
-    assert (drawn.springs, drawn.held_by, drawn.walls, drawn.start) == ([], set(), (), {"x": 0.0, "y": 0.03})
-    met, apart = (hl.mechanics.picture(scene, x=0.01, y=y) for y in (0.01, 0.014))
-    assert outline_of(met, HANDLE)[1] == pytest.approx(outline_of(met, BODY)[0], abs=1e-12)
-    assert outline_of(apart, BODY)[0] - outline_of(apart, HANDLE)[1] == pytest.approx(0.004, abs=1e-12)
+    schematic = Schematic(scene)
+    assert (schematic.ties, schematic.held_by, schematic.walls, schematic.start) == ([], {}, (), {"x": 0.0, "y": 0.03})
+    for gap in (0.0, 0.004):
+        found = drawn(scene, x=0.01, y=0.01 + gap)
+        (centre, rim), _ = found["disc"][0]
+        face, back, _ = found["handle"][0][0]
+        assert face[1] == pytest.approx(0.01, abs=1e-12) and back[1] < face[1]  # upright: its face looks up
+        assert centre[1] - np.hypot(*(rim - centre)) - face[1] == pytest.approx(gap, abs=1e-12)
+    assert any(tip[1] < tail[1] - 0.001 for (tail, tip), _ in found["arrow"])  # gravity points down
+    assert {"$m$", "$g$"} <= letters(found)
