@@ -8,11 +8,11 @@ TAGS = {
     "html", "head", "meta", "title", "style", "body", "header", "main", "footer", "section", "div", "h1", "h2", "h3", "p",
     "pre", "code",
     "strong", "span", "bdi", "a", "table", "caption", "thead", "tbody", "tr", "th", "td", "figure", "figcaption", "details",
-    "summary", "svg", "path", "rect", "circle", "text", "defs", "pattern",
+    "summary", "ul", "li", "svg", "path", "rect", "circle", "text", "defs", "pattern",
 }  # fmt: skip
 ATTRIBUTES = {
     "lang", "charset", "http-equiv", "content", "name", "class", "id", "href", "scope", "role", "aria-label", "aria-hidden",
-    "dir",
+    "dir", "tabindex",
     "viewbox", "width", "height", "d", "fill", "stroke", "stroke-width", "stroke-linecap", "stroke-dasharray", "x",
     "y", "cx", "cy",
     "r", "text-anchor", "transform", "patternunits", "patterntransform",

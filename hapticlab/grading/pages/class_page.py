@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from statistics import mean, median
 
+from ...course.exercise import NOTED
 from ..formats.words import judged, state
 
 #: how an exercise went -> the word beside its sign, in the order of tables and bars
@@ -30,6 +31,7 @@ def class_facts(pages):
         "pages": pages,
         "graded": graded,
         "stopped": [(address, report, one) for address, report in graded for one in report.exercises if one.ended],
+        "written": _written(graded),
         "names": list(dict.fromkeys(one.name for _, report in pages for one in judged(report))),
         "students": [(address, report, {one.name: went(one, report) for one in judged(report)}) for address, report in pages],
     }
@@ -64,7 +66,18 @@ def _exercises(graded):
     names = [name for name in rows if part[name] == min(part.values())]
     hardest = {"names": names, "right": rows[names[0]]["right"], "whole": sum(rows[names[0]].values())} if rows else {}
     told = "; ".join(f"{name}: {', '.join(f'{n} {WORDS[word]}' for word, n in counts.items())}" for name, counts in rows.items())
-    return {"exercises": rows, "hardest": hardest, "exercises_told": told}
+    asked = {one.name: one for _, report in graded for one in judged(report)}
+    return {"questions": asked, "exercises": rows, "hardest": hardest, "exercises_told": told}
+
+
+def _written(graded):
+    """What students wrote, side by side: exercise to what was asked for, and each student's text."""
+    found = {}
+    for address, report in graded:
+        for one in report.exercises:
+            if one.kind in NOTED and one.text.strip():
+                found.setdefault(one.name, (one.asks, []))[1].append((address, report, one.text.strip()))
+    return found
 
 
 def went(one, report):

@@ -9,8 +9,13 @@ from ...course.cards.page_text import pair, shown
 
 #: lists of more numbers are told by their first ones, tables of more too; a figure shows all
 MOST_NUMBERS, MOST_ROWS = 6, 24
-#: what is given to a scene, whose words need not say it
-UNITS = {"x": "m", "v": "m/s", "T": "s"}
+#: of names that mean the same in every lab, where no exercise says another unit
+UNITS = {
+    "x": "m", "x_o": "m", "x_goal": "m", "z": "m", "l": "m", "D": "m", "gap": "m", "v": "m/s", "v0": "m/s", "v_goal": "m/s",
+    "rate": "m/s", "g": "m/s^2", "t": "s", "T": "s", "h": "s", "m": "kg", "M": "kg", "F": "N", "F_max": "N", "force_max": "N",
+    "k": "N/m", "K": "N/m", "b": "N s/m", "b_c": "N s/m", "b_low": "N s/m", "b_high": "N s/m", "b_added": "N s/m", "B": "N s/m",
+    "theta": "rad", "omega": "rad/s", "credit": "J", "hz": "Hz", "metres_per_count": "m", "grams": "g",
+}  # fmt: skip
 #: of an exercise that the lab does not have
 TOLERANCE = 1e-6, 1e-12
 
@@ -44,11 +49,16 @@ def _told(name, asks):
 
 def given(one, lab):
     """Rows (name, value, unit) of what was given."""
-    flat, units = {}, UNITS if one.kind == "scene" else {}
+    flat: dict = {}
     for name, value in one.failing.given.items():
         flat |= value if isinstance(value, dict) else {name: value}
     few = [(str(name), value) for name, value in [*flat.items()][:MOST_ROWS]]
-    return [(name, shown(value), unit_of(name, one, lab, units.get(name, ""))) for name, value in few]
+    return [(name, shown(value), unit_of(name, one, lab, UNITS.get(name, ""))) for name, value in few]
+
+
+def options(one, lab):
+    """Pairs (key, words) of a choice."""
+    return next(([*e.options.items()] for e in lab.exercises if e.name == one.name), [])
 
 
 def compared(one, lab):

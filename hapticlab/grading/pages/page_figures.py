@@ -48,12 +48,12 @@ def shares(rows, alt):
         Exercise to the count of each part.
     alt : str
     """
-    left, row = 20 + 8.2 * max(len(name[:30]) for name in rows), 30
+    left, row = 20 + 10 * max(len(name[:30]) for name in rows), 30
     inside = [f"<defs>{STRIPES}</defs>"]
     for k, part in enumerate(FILLS):
         inside.append(
-            f'<rect x="{left + 110 * k:.0f}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>'
-            f'<text x="{left + 110 * k + 28:.0f}" y="16">{part}</text>'
+            f'<rect x="{8 + 150 * k}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>'
+            f'<text x="{8 + 150 * k + 28}" y="16">{part}</text>'
         )
     for k, (name, counts) in enumerate(rows.items()):
         y, x, whole = 30 + k * row, left, max(1, sum(counts.values()))

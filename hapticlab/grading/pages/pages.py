@@ -14,7 +14,7 @@ from ...errors import CourseError
 from ..formats.words import state
 from .class_page import WORDS, broken, class_facts
 from .exercise_card import SHEET, card
-from .failing_case import compared, drawn, given
+from .failing_case import compared, drawn, given, options
 from .page_figures import bars, shares
 
 if TYPE_CHECKING:
@@ -29,9 +29,9 @@ OWN = b"default-src 'none'; style-src 'sha256-"
 HERE = Path(__file__).parent
 #: what the templates call
 NAMES = {
-    "BLOCK": BLOCK, "MOST_CELLS": 40, "NOTED": NOTED, "WORDS": WORDS,
+    "BLOCK": BLOCK, "MOST_CELLS": 40, "MOST_WRITTEN": 2000, "NOTED": NOTED, "WORDS": WORDS,
     "bars": bars, "broken": broken, "card": card,
-    "compared": compared, "drawn": drawn, "given": given, "shares": shares, "state": state,
+    "compared": compared, "drawn": drawn, "given": given, "options": options, "shares": shares, "state": state,
 }  # fmt: skip
 
 

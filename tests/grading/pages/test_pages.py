@@ -90,8 +90,9 @@ def test_the_class_page_counts_what_the_reports_hold(written):
     earned = np.array([report.earned for report in graded])
     assert f"30 submissions, {len(graded)} graded. Median {np.median(earned):.3g}, mean {earned.mean():.3g}" in page.words
     assert f"{(earned == 10).sum()} earned all" in page.words
-    for points in range(11):
-        assert f" {points} {(earned == points).sum()} {100 * (earned == points).mean():.0f} % " in page.words
+    (told,) = [value for name, value in page.attributes if name == "aria-label" and "by points" in value]
+    for points in np.unique(earned):
+        assert f" {(earned == points).sum()} with {points:g}" in told
     judged = [[one for one in report.exercises if one.kind not in ("prediction", "text")] for report in graded]
     right = {one.name: 0 for one in judged[0]}
     slips = {}
@@ -108,6 +109,42 @@ def test_the_class_page_counts_what_the_reports_hold(written):
         assert not report.problem or f"{report.student} wall.docx {report.problem}" in page.words
         for one in report.exercises:
             assert not one.ended or f"{report.student} {one.name} {one.words}" in page.words
+
+
+def test_what_students_wrote_stands_side_by_side_and_is_escaped(tmp_path):
+    said = {"ada": "b = 0.1\nI <b>think</b>", "ned": "about 16 %", "zoe": "  "}
+    reports = [
+        Report(
+            name,
+            "02",
+            "Walls",
+            "w",
+            exercises=(ExerciseReport("guess", "prediction", "the share [%]", answered=True, text=text),),
+        )
+        for name, text in said.items()
+    ]
+    page = Page(write_pages(reports, tmp_path, lab=LAB)[0])
+    assert "guess Asked for: the share [%] ada b = 0.1 I <b>think</b> ned about 16 % Could not" in page.words
+    assert "b" not in page.tags and "&lt;b&gt;think" in page.source
+
+
+def test_marks_come_first_and_each_exercise_tells_its_question_and_points(written):
+    page = Page(written.folder / "class.html")
+    heads = ("Students", "Exercises", "Common mistakes", "Predictions and discussions", "Could not be graded")
+    places = [page.source.index(f"<h2>{head}</h2>") for head in heads]
+    assert places == sorted(places)
+    for one in written.lab.exercises:
+        if one.judged:
+            assert f"{one.name} {one.points:g} point{'' if one.points == 1 else 's'} Asked for: {one.asks}" in page.words
+
+
+def test_a_choice_tells_its_options_and_a_right_answer_takes_one_line(tmp_path):
+    lab = Lab("02", "Walls", 90, (Exercise("who", "choice", 1, options={"a": "the hand", "b": "the <motor>"}),))
+    wrong = ExerciseReport("who", "choice", 'a "letter"', 1.0, answered=True, cases=1, words="not b")
+    right = ExerciseReport("k", "value", "the stiffness [N/m]", 1.0, 1.0, answered=True, right=1, cases=1)
+    page = Page(write_pages([Report("ada", "02", "Walls", "w", exercises=(wrong, right))], tmp_path, lab=lab)[1])
+    assert 'Asked for: a "letter" a: the hand b: the <motor>' in page.words
+    assert "the stiffness" not in page.words and page.words.count("k ✓ right") == 2
 
 
 def test_the_same_reports_give_the_same_bytes_in_whatever_order(written, tmp_path):
@@ -242,7 +279,7 @@ def test_scalars_stand_in_a_table_with_units_and_what_differs_is_marked(tmp_path
     failing = Failing({"k": 200.0, "b": 1.5, "T": 1e-3}, {"leak": 0.1 + 0.2, "loss": 2.0}, {"leak": 0.3, "loss": 1.0}, "J", False)
     exercise = ExerciseReport("wall", "function", "F [N] at k [N/m]", 2.0, answered=True, cases=1, words="w", failing=failing)
     page = Page(write_pages([Report("ada", "02", "Walls", "w", exercises=(exercise,))], tmp_path, lab=LAB)[1])
-    assert "given value unit k 200 N/m b 1.5 N s/m T 0.001 answer" in page.words, "b by the words of the other exercise"
+    assert "given value unit k 200 N/m b 1.5 N s/m T 0.001 s answer" in page.words, "b by the words of the other exercise"
     assert "leak 0.3 0.3 J loss 2 ≠ 1 J" in page.words
     assert "<figure" not in page.source
 
@@ -262,9 +299,10 @@ def test_an_answer_in_a_cell_that_failed_is_told_from_none(tmp_path):
     reports = [Report(name, "02", "Walls", "w", cells=cells[name], exercises=none) for name in cells]
     of_class, ada, ned = map(Page, write_pages(reports, tmp_path, lab=LAB))
     words = "no answer, and a cell failed"
-    assert f"right wrong no answer {words} wall 0 (0 %) 0 (0 %) 1 (50 %) 1 (50 %)" in of_class.words
-    assert of_class.words.endswith(f"○ no answer; △ {words} student mark wall ada 0 of 2 ○ ned 0 of 2 △ {FOOT}")
-    assert [value for name, value in of_class.attributes if name == "aria-label"][-2:] == ["no answer", words]
+    assert f"wall 2 points right 0 (0 %); wrong 0 (0 %); no answer 1 (50 %); {words} 1 (50 %)" in of_class.words
+    assert f"○ no answer; △ {words} student mark wall ada 0 of 2 ○ ned 0 of 2 △ Marks" in of_class.words
+    assert of_class.words.endswith(FOOT)
+    assert [value for name, value in of_class.attributes if name == "aria-label"][1:3] == ["no answer", words]
     assert "Cells failed , and there is no answer: if it is in one of them, that is why." in ned.words
     assert ned.links == ["#e1", "#errors"] and ("id", "errors") in ned.attributes
     assert "there is no answer" not in ada.words

@@ -1,0 +1,38 @@
+"""Pages of a class as a browser shows them: narrow and wide, light and dark, readable by everybody."""
+
+import pytest
+from axe import findings
+
+from hapticlab.course.exercise import Case, Exercise, Lab
+from hapticlab.grading.pages.pages import write_pages
+from hapticlab.grading.report import ExerciseReport, Failing, Report
+
+LAB = Lab("02", "Walls", 90, (
+    Exercise("the_work_of_a_held_force", points=2, asks="F [N] at k [N/m]", cases=(Case({}, 1.0),)),
+    Exercise("discussion", "text", asks="why the wall chatters"),
+))  # fmt: skip
+FAILING = Failing({"x": [0.0, 0.001, 0.002, 0.003], "k": 200.0}, [0.0, 2.0, 4.0, 6.0], [0.0, 1.0, 2.0, 3.0], "N", public=True)
+WRONG = ExerciseReport(
+    "the_work_of_a_held_force", "function", "F [N] at k [N/m]", 2.0, answered=True, cases=3, words="4 of 4 numbers differ",
+    slip="The spring is twice as stiff as it should be.", hint="Which spring acts?", failing=FAILING,
+)  # fmt: skip
+SAID = ExerciseReport("discussion", "text", "why the wall chatters", answered=True, text="The held force is late. " * 12)
+NAMES = ("ben_partly", "Anna-Maria Gutenberg-Lindqvist", "kovalevskaya")
+
+
+@pytest.mark.wide
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_nothing_is_cut_or_broken_and_axe_finds_nothing_serious(browser, tmp_path, scheme):
+    cells = ((3, "NameError in line 2: name 'math' is not defined"),)
+    reports = [Report(name, "02", "Walls", "w.ipynb", cells=cells, exercises=(WRONG, SAID)) for name in NAMES]
+    paths = write_pages(reports, tmp_path, lab=LAB)
+    page = browser.new_page(color_scheme=scheme)
+    for width in (390, 1280):
+        page.set_viewport_size({"width": width, "height": 800})
+        for path in paths[:2]:
+            page.goto(path.as_uri())
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            lines = "[...document.querySelectorAll('bdi, code')].map((one) => [one.textContent, one.getClientRects().length])"
+            assert not [text for text, count in page.evaluate(lines) if count > 1 and " " not in text]
+            assert findings(page) == []
+    page.close()
