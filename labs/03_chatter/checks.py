@@ -2,40 +2,49 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-ONE_PERIOD = "That takes the hold for a whole period of delay. In the mean a force that is held for T is late by T/2."
-HOLD_ALONE = "That leaves the computational delay out: it comes on top of the half period of the hold."
-NO_HOLD = "That leaves the hold out: half a period, on top of the computational delay."
-TAKEN_TWICE = "With k tau <= b the limit is b/tau; there is no factor 2 beside it, it comes from tau = T/2."
-DETERMINANT = "That is the determinant, |z|^2 of the two complex eigenvalues. The amplitude grows by its root."
+ONE_PERIOD = "That counts the hold as a delay of a whole period. On average, a force that is held for T is late by T/2."
+HOLD_ALONE = "That leaves out the computational delay, which is added to the half period of the hold."
+NO_HOLD = "That leaves out the hold, which adds half a period to the computational delay."
+TAKEN_TWICE = (
+    "The condition k tau <= b gives the limit b/tau. The factor 2 in 2b/T comes from tau = T/2, so do not apply it again."
+)
+DETERMINANT = "That is the determinant, |z|^2 of the two complex eigenvalues. The amplitude grows by its square root."
 NO_HALF = (
-    "That is what a position without the term - k T^2/(2 m) x gives: the handle moves on a "
-    "parabola while the force is constant, "
-    "and the force acts on x in this very period."
+    "You left out the term - k T^2/(2 m) x of the position. The handle moves on a parabola while the force is "
+    "constant, so the force changes x within the same period."
 )
-FIRST_ORDER = "That is the first order in T^2. The parabola is exact, and so is the factor: there is a root in it."
-TRACE = "That is half the trace, the real part of the eigenvalues. Their magnitude is the root of the determinant."
+FIRST_ORDER = "That is the first order in T^2. The parabola is exact, and so is the factor, which contains a square root."
+TRACE = "That is half the trace, the real part of the eigenvalues. Their magnitude is the square root of the determinant."
 EULER = (
-    "That comes of x(n+1) = x(n) + T v(n+1), a way to integrate that keeps energy. The handle itself moves on a "
-    "parabola while the force is held, and gains."
+    "That belongs to x(n+1) = x(n) + T v(n+1), a method that conserves energy. The handle itself moves on a "
+    "parabola while the force is held, and gains energy."
 )
-OFF_ZERO = "It never crosses zero, for it swings about 2 mm. Subtract the mean first."
-NO_GAIN = "The sign is turned: k T/2 > b here, so the hold gives k T/2 - b beyond what the dampers take."
-BOTH_WAYS = "Twice too much: crossings of both directions were counted. A cycle has one upward crossing."
-PER_TIME = "Crossings over the whole time count a part of a cycle at both ends. Take whole cycles, from crossing to crossing."
-NO_PI = "The integral of cos^2 over a cycle brings a pi: the hold gives pi w X^2 (k T/2 - b)."
-ONE_QUARTER = "Friction acts along the whole way of a cycle, which is 4 X, and the integral brings a pi."
-HALF_WAY = "In a cycle of amplitude X the handle goes 4 X, not 2 X: from one end to the other and back."
-WHOLE_T = "The hold is a damper of -k T/2, half a period of delay, not a whole one."
-NO_DAMPER = "The damping b takes its part of what the hold gives: what is left is k T/2 - b."
-SUM = "The encoder's leak is not paid by b, and the hold's not by friction: each has to pay for its own, so the smaller counts."
-ENCODER_ALONE = "That is what friction pays for. The damper has to pay for the hold too: the smaller of the two counts."
-HOLD_ONLY = "That is what the damper pays for. Friction has to pay for the encoder too: the smaller of the two counts."
-HALF_COUNT = "Friction pays twice that: the work of friction over a count, there and back, is 2 f_c Delta."
+OFF_ZERO = "You found no crossing, because x oscillates about 2 mm, not about zero. Subtract the mean first."
+NO_GAIN = "The sign is wrong: k T/2 > b here, so the hold generates k T/2 - b more than the dampers dissipate."
+BOTH_WAYS = "That is twice the frequency: you counted upward and downward crossings, but a cycle has only one upward crossing."
+PER_TIME = (
+    "You divided by the whole time, which contains a part of a cycle at each end. Count whole cycles, from the "
+    "first crossing to the last."
+)
+NO_PI = "A factor pi is missing. It comes from the integral of cos^2 over a cycle: the hold generates pi w X^2 (k T/2 - b)."
+ONE_QUARTER = "Friction acts over the whole distance of a cycle, 4 X, not over X. The integral also contributes a factor pi."
+HALF_WAY = "In a cycle of amplitude X the handle moves 4 X, not 2 X: from one end to the other and back."
+WHOLE_T = "The hold is a damper of -k T/2. It is late by half a period, not by a whole period."
+NO_DAMPER = "You left out the damping b, which dissipates a part of what the hold generates. The remainder is k T/2 - b."
+SUM = (
+    "You added the two limits. The damper does not pay for the leak of the encoder, and friction does not pay "
+    "for that of the hold. Each must pay for its own leak, so the smaller limit applies."
+)
+ENCODER_ALONE = (
+    "That is the limit from friction. The damper must also pay for the hold, so the smaller of the two limits applies."
+)
+HOLD_ONLY = "That is the limit from the damper. Friction must also pay for the encoder, so the smaller of the two limits applies."
+HALF_COUNT = "That is half as large as expected: over one count, there and back, friction dissipates 2 f_c Delta."
 
 DELAYS = {"x": [0.0, 0.5e-3, 1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3], "x_unit": "s", "y_unit": "N/m"}
 WHOLE_PERIOD = DELAYS | {"y": [1100.0, 733.333333, 550.0, 440.0, 366.666667, 314.285714, 275.0]}
 SLOW_PERIOD = DELAYS | {"y": [250.0, 200.0, 166.666667, 142.857143, 125.0, 111.111111, 100.0]}
-#: from half a millisecond on, for without the hold there is no limit at delay 0
+#: beginning at half a millisecond: without the hold there is no limit at delay 0
 LATER = {"x": DELAYS["x"][1:], "x_unit": "s", "y_unit": "N/m"}
 
 LAB = Lab(
@@ -43,7 +52,7 @@ LAB = Lab(
     title="Chatter",
     minutes=110,
     exercises=(
-        Exercise("prediction", kind="prediction", asks="the stiffness [N/m] from which the wall chatters in a pinching hand"),
+        Exercise("prediction", kind="prediction", asks="the stiffness [N/m] above which the wall chatters in a pinching hand"),
         Exercise(
             "stability_estimate",
             points=1,
@@ -62,14 +71,14 @@ LAB = Lab(
                     slips={200.0: ONE_PERIOD, 500.0: HOLD_ALONE, 666.6666666666666: TAKEN_TWICE, 1000.0: NO_HOLD},
                 ),
             ),
-            hint="How late is the force in all? What does a spring that is late do to the damping of the loop?",
+            hint="How late is the force in total? How does a late spring change the damping of the loop?",
             matters="Sampling and computation both make the force late, so a faster loop allows a stiffer wall.",
         ),
         Exercise(
             "limit_over_delay",
             kind="plot",
             points=1,
-            asks="a function of b [N s/m] and T [s] that returns a figure: the limit in N/m over delays of 0 to 3 ms",
+            asks="a function of b [N s/m] and T [s] that returns a figure: the limit in N/m over delays from 0 to 3 ms",
             rtol=0.02,
             cases=(
                 Case(
@@ -93,13 +102,13 @@ LAB = Lab(
                     ),
                 ),
             ),
-            hint="Is it one line through many points? Do both labels end in a unit such as [ms], and are the numbers in it?",
+            hint="Is there one line through many points? Do both labels end in the unit of their numbers, such as [ms]?",
             matters="The curve shows how much stiffness each millisecond of delay costs.",
         ),
         Exercise(
             "growth_per_sample",
             points=1,
-            asks="the factor on the amplitude in one sample, of m [kg], k [N/m], T [s], without damping",
+            asks="the factor by which the amplitude grows in one sample, of m [kg], k [N/m], T [s], without damping",
             cases=(
                 Case(
                     {"m": 0.05, "k": 1000.0, "T": 5e-3},
@@ -113,8 +122,10 @@ LAB = Lab(
                 ),
             ),
             rtol=1e-7,
-            hint="Which matrix takes (x, v) to the next sample? What does its determinant say of two complex eigenvalues?",
-            matters=("Without damping every sampled wall chatters, however soft the wall and however fast the computer."),
+            hint=(
+                "Which matrix gives (x, v) at the next sample? What does its determinant tell you about two complex eigenvalues?"
+            ),
+            matters="Without damping every sampled wall chatters, however soft the wall and however fast the computer.",
         ),
         Exercise(
             "late_wall",
@@ -127,22 +138,28 @@ LAB = Lab(
                     [0.0, 0.0, 0.0, 1.0, 2.0, 0.5],
                     unit="N",
                     slips=(
-                        ((0.0, 0.0, 1.0, 2.0, 0.5, 0.0), "That is the wall without delay: x(n) everywhere."),
+                        ((0.0, 0.0, 1.0, 2.0, 0.5, 0.0), "That is the wall without delay. Replace x(n) by x(n-1) everywhere."),
                         (
                             (0.0, -1.0, 0.0, 1.0, 2.0, 0.0),
-                            "The condition still looks at x(n): a late wall does not yet know that the handle is in, or out.",
+                            (
+                                "Your condition still uses x(n). A late wall does not know yet whether the handle "
+                                "is inside at sample n."
+                            ),
                         ),
                         (
                             (0.0, 0.0, 1.0, 2.0, 0.5, -1.0),
-                            "The condition is late and the spring is not: both look at x(n-1).",
+                            "Your condition is late, but your spring is not. Use x(n-1) in both.",
                         ),
-                        ((0.0, 0.0, 0.0, -1.0, -2.0, -0.5), "The sign is turned: force is F_e, on the environment."),
-                        ((0.0, 0.0, 0.5, 1.5, 2.5, 1.0), "The spring is pressed by x(n-1) - x_o, from the wall on."),
+                        ((0.0, 0.0, 0.0, -1.0, -2.0, -0.5), "The sign is wrong: `force` is F_e, the force ON the environment."),
+                        (
+                            (0.0, 0.0, 0.5, 1.5, 2.5, 1.0),
+                            ("The spring begins at the boundary, so the penetration depth is x(n-1) - x_o."),
+                        ),
                     ),
                 ),
             ),
-            hint="What does a wall know that has not seen x(n) yet?",
-            matters=("A slow computer or a filter delays the force in the same way, so you can try their effect in one line."),
+            hint="Which samples can the condition and the spring use if x(n) is not known yet?",
+            matters="A slow computer or a filter delays the force in the same way, so you can try their effect in one line.",
         ),
         Exercise(
             "chatter_frequency",
@@ -168,8 +185,10 @@ LAB = Lab(
                 ),
             ),
             rtol=0.02,
-            hint="Between which samples does x rise through its mean? How many cycles lie between first and last crossing?",
-            matters=("The frequency helps to find the cause, because a hand cannot oscillate on purpose at tens of hertz."),
+            hint=(
+                "Between which samples does x rise through its mean? How many cycles lie between the first and the last crossing?"
+            ),
+            matters="The frequency helps you to find the cause, because no hand can deliberately oscillate at tens of hertz.",
         ),
         Exercise(
             "threshold_speed",
@@ -203,13 +222,13 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="How far does the handle go in a whole cycle? What is the integral of its speed squared over that cycle?",
-            matters=("Dry friction can hide an unstable wall: whether the wall chatters then depends on how you touch it."),
+            hint="How far does the handle move in a whole cycle? What is the integral of its squared speed over this cycle?",
+            matters="Dry friction can hide an unstable wall. Whether the wall chatters then depends on how you touch it.",
         ),
         Exercise(
             "quantised_limit",
             points=1,
-            asks="the largest passive stiffness [N/m], of b [N s/m], T [s], f_c [N] and a count of resolution [m]",
+            asks="the largest passive stiffness [N/m], of b [N s/m], T [s], f_c [N] and the resolution, one count [m]",
             cases=(
                 Case(
                     {"b": 0.1, "T": 1e-3, "f_c": 0.1, "resolution": 0.742e-3},
@@ -224,7 +243,7 @@ LAB = Lab(
                     slips={200.0: HOLD_ONLY, 334.77088948787062: SUM, 67.38544474393531: HALF_COUNT},
                 ),
             ),
-            hint="Two leaks, each with its own payer. Both have to be paid for.",
+            hint="Which leak does the damper pay for, and which leak does friction pay for? Which of the two limits is smaller?",
             matters="The hold and the encoder are two separate causes of chatter, and each needs a remedy of its own.",
         ),
         Exercise(
@@ -238,19 +257,23 @@ LAB = Lab(
                     {},
                     "c",
                     slips={
-                        "a": "Below the stability limit the hold is paid for, and at half the "
-                        "stiffness or twice the rate "
-                        "twice over. The swing stayed.",
-                        "b": "A delay drives a swing that grows until the handle leaves the wall, "
-                        "and that dies in a softer "
-                        "one. This one never leaves it, and stayed.",
-                        "d": "24 Hz that become 18 Hz when the wall is softer belong to the wall. "
-                        "A tremor, of 8 to 12 Hz, "
-                        "keeps its own.",
+                        "a": (
+                            "Below the stability limit the damping pays for the hold, and at half the stiffness or "
+                            "twice the rate by a factor of two. The oscillation remained."
+                        ),
+                        "b": (
+                            "A delay drives an oscillation that grows until the handle leaves the wall, and that "
+                            "decays on a softer wall. In this report the handle never leaves the wall, and the "
+                            "oscillation remained."
+                        ),
+                        "d": (
+                            "The frequency falls from 24 Hz to 18 Hz when the wall is softer, so it depends on the "
+                            "wall. A tremor keeps its own frequency, 8 to 12 Hz."
+                        ),
                     },
                 ),
             ),
-            hint="Look at what the sensed position does, and at what did not change anything.",
+            hint="What does the sensed position do? Which changes made no difference?",
             matters=(
                 "A remedy for the wrong cause changes nothing. A recording can separate the causes before you change the device."
             ),

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import hapticlab as hl
 from hapticlab.course.check import checked
 from hapticlab.course.labs import find_lab, find_labs
 from hapticlab.course.marks import SOLUTION, hidden_cases, instructor_names, marks
@@ -19,6 +20,20 @@ def test_a_gap_of_exactly_zero_may_count_as_open_or_closed(closed):
         return np.maximum(0, np.where(closed(gap, 0), -k * gap - b * rate, 0))
 
     assert checked("08.penalty_force", find_lab("08").exercise("penalty_force"), penalty_force).passed
+
+
+def test_a_limit_may_be_drawn_by_the_package():
+    def limit_over_delay(b, T):
+        delay = np.linspace(0, 3, 60)
+        return hl.plot({"": (delay, b / (T / 2 + 1e-3 * delay))}, xlabel="delay [ms]", ylabel="stiffness k [N/m]")
+
+    lab = find_lab("03")
+    hidden = hidden_cases(lab, ROOT / "tests" / "instructor" / FOLDERS["03"].name)
+    assert checked("03.limit_over_delay", lab.exercise("limit_over_delay"), limit_over_delay).passed
+    (found,) = (
+        mark for mark in marks(lab, {"limit_over_delay": limit_over_delay}, hidden) if mark.exercise == "limit_over_delay"
+    )
+    assert found.earned == found.points
 
 
 @pytest.mark.wide

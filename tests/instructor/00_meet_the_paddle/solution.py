@@ -7,7 +7,7 @@ which_way = "c"
 
 
 def handle_position(counts, left, right, travel):
-    """Return positions [m]: the middle of the two readings is x = 0, and the stops span the travel, with its sign."""
+    """Return positions [m]: x = 0 is the middle of the two readings."""
     return (counts - (left + right) / 2) * travel / (right - left)
 
 
@@ -38,9 +38,11 @@ def limits(k, metres_per_count, force_max, T):
 
 
 discussion = """
-With the wires swapped, the motor applies +F_e to the handle instead of -F_e, so the wall acts as a spring of stiffness
--300 N/m at its boundary: the deeper the handle is, the harder the motor pulls it in. The equilibrium at the boundary is
-unstable, and the handle runs away, exponentially with the rate sqrt(k/m), until it meets the stop. The board allows at most
-0.5 N before the sign is checked. Its limits on speed, on travel and on the time for which a force is held switch the motor
-off with a fault. The switch of the motor's supply ends the motion at once.
+With the wires swapped, the motor applies +F_e to the handle instead of -F_e, so the
+wall acts as a spring of stiffness -300 N/m at its boundary: the deeper the handle is,
+the harder the motor pulls it in. The equilibrium at the boundary is unstable, and the
+handle runs away, exponentially with the rate sqrt(k/m), until it meets the stop. The
+board allows at most 0.5 N before the sign is checked. Its limits on speed, on travel
+and on the time for which a force is held switch the motor off with a fault. The switch
+of the motor's supply ends the motion at once.
 """

@@ -16,7 +16,7 @@ thousand = "a"
 
 
 def spring_damper_force(x, v, k, b):
-    """Return the force on the environment [N]: both terms resist, so both are positive along x and v."""
+    """Return the force on the environment [N]: both terms resist."""
     return k * x + b * v
 
 
@@ -50,9 +50,11 @@ def resonance(m, K, b_c):
 
 
 discussion = """
-The position of the sensor changes in steps of one count. The second difference divides such a step by T squared, so a
-single count becomes 1.28 N for 0.1 kg, fifty times the force of the motion itself, and this force moves the handle to the
-next count. The coupler needs no derivative: the mass has its own state, and integration makes this state smooth. In return
-there is a spring between the hand and the mass: the hand feels quick starts late and softened, the mass oscillates against
-the coupler and the hand, and above its resonance the hand feels the spring of the coupler rather than the mass.
+The position of the sensor changes in steps of one count. The second difference divides
+such a step by T squared, so a single count becomes 1.28 N for 0.1 kg, fifty times the
+force of the motion itself, and this force moves the handle to the next count. The
+coupler needs no derivative: the mass has its own state, and integration makes this
+state smooth. In return there is a spring between the hand and the mass: the hand feels
+quick starts late and softened, the mass oscillates against the coupler and the hand,
+and above its resonance the hand feels the spring of the coupler rather than the mass.
 """

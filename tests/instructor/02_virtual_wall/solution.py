@@ -9,7 +9,7 @@ prediction = "16 %"  # a text is noted as well
 
 
 def held_work(k, x, D):
-    """Work of the handle on the wall in one period [J]: the held force times the displacement."""
+    """Return the held force times the displacement [J]."""
     return k * x * D
 
 
@@ -19,7 +19,7 @@ def period_leak(k, D):
 
 
 def bounce_gain(k, m, T):
-    """Energy generated in one bounce over the energy that went in, to first order in T."""
+    """Return the fraction of the energy that one bounce generates, to first order."""
     return np.pi / 2 * T * np.sqrt(k / m)
 
 
@@ -30,17 +30,21 @@ def energy_generated(x, k):
 
 
 k, x_o = hl.parameters("k x_o", units="N/m m")
-two_walls = hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)) + hl.when(x(n) <= -x_o, k * (x(n) + x_o)))
+right = hl.when(x(n) >= x_o, k * (x(n) - x_o))
+left = hl.when(x(n) <= -x_o, k * (x(n) + x_o))
+two_walls = hl.Scene(force=right + left)
 
 K_OWN = 500.0
 T_OWN = 1e-3
 damping_that_pays = K_OWN * T_OWN / 2
 who_pays = "d"
 discussion = """
-The force computed from x(n) acts while the handle leaves x(n). Pairing it with the displacement that ends at x(n) gives
-each period the force of its end instead of its beginning. Each period is then wrong by the step of the held force, k D,
-times D: twice the leak, with the other sign, so that a wall that generates energy seems to absorb as much. Slow pressing
-leaks little because the leak grows with the square of the speed, but so does the energy of a small oscillation: the
-ratio of leak to stored energy does not depend on the amplitude. A still hand on a stiff wall begins with a tiny
+The force computed from x(n) acts while the handle leaves x(n). Pairing it with the
+displacement that ends at x(n) gives each period the force of its end instead of its
+beginning. Each period is then wrong by the step of the held force, k D, times D: twice
+the leak, with the other sign, so that a wall that generates energy seems to absorb as
+much. Slow pressing leaks little because the leak grows with the square of the speed,
+but so does the energy of a small oscillation: the ratio of leak to stored energy does
+not depend on the amplitude. A still hand on a stiff wall begins with a tiny
 oscillation, which grows by the same fraction in each cycle.
 """
