@@ -28,6 +28,7 @@ from .experiments.psychometric import Intervals, psychometric
 from .experiments.reaching import Control, Load, follow, reach
 from .experiments.response_curves import Psychometric
 from .experiments.shared_control import assistance
+from .experiments.simulated_choices import simulate_choices
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import Levels, UpDown
 from .vocabulary import page
@@ -63,6 +64,7 @@ __all__ = [
     "psychometric",
     "random_hands",
     "reach",
+    "simulate_choices",
     "stiffness_task",
     "texture_task",
 ]
