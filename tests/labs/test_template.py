@@ -10,7 +10,7 @@ from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import code_of, read
 
 #: labs that are set by it
-SET = ("00", "01", "02", "03", "04", "05", "06", "07", "08", "09")
+SET = ("00", "01", "02", "03", "04", "05", "06", "07", "08", "09", "10")
 SECTIONS = ("Predict", "Derive", "Compile", "Feel", "Measure", "Compare", "Hand in")
 FOLDERS = [folder for folder in find_labs(LABS) if folder.number in SET]
 
