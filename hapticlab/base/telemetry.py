@@ -6,13 +6,17 @@ import csv
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
 import numpy as np
 
 from ..errors import AnalysisError
+from .facts import Fact, facts
+from .grid import frame, labelled
 from .missed_events import depth_words, ends_inside
+from .shows_itself import ShowsItself
+from .thumbnail import thumbnail
 
 if TYPE_CHECKING:
     from .annotations import File
@@ -24,11 +28,18 @@ MEANT = {
     "time": "t", "times": "t", "position": "x", "pos": "x", "velocity": "v", "vel": "v", "speed": "v", "force": "F", "f": "F",
     "period": "T", "dt": "T", "names": "columns", "params": "parameters", "csv": "to_csv",
 }  # fmt: skip
-TO_PANDAS = ("to_pandas", "to_dataframe", "to_frame", "df", "dataframe")
+TO_PANDAS = ("to_dataframe", "to_frame", "df", "dataframe", "pandas")
+#: what a notebook says of each column
+MEANINGS = {
+    "t": "Time", "x": "Handle position, positive into the wall", "v": "Handle velocity",
+    "F": "Force on the environment; the motor applies -F", "x_true": "Position before the sensor",
+    "v_true": "Velocity before the sensor", "F_applied": "Force that acted", "saturated": "Samples whose force was limited",
+    "gap": "Samples that follow a lost one", "overrun": "Samples whose step missed its period",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
-class PaddleProfile:
+class PaddleProfile(ShowsItself):
     """The constants of a kind of paddle, and where they come from.
 
     Attributes
@@ -82,7 +93,7 @@ class PaddleProfile:
 
 
 @dataclass(frozen=True, eq=False)
-class Telemetry:
+class Telemetry(ShowsItself):
     """What a paddle recorded, one row a sample.
 
     Attributes
@@ -171,8 +182,7 @@ class Telemetry:
             )
         recorded = ", ".join(("t", "x", "v", "F", *channels))
         if name in TO_PANDAS:
-            table = "pandas.DataFrame({name: getattr(log, name) for name in log.columns})"
-            raise AttributeError(f"a record has no {name}; {table} makes a table of it")
+            raise AttributeError(f"a record has no {name}; log.to_pandas() makes a table of it")
         if name in MEANT:
             raise AttributeError(f"a record has {MEANT[name]}, not {name}: log.{MEANT[name]}; it holds {recorded}")
         raise AttributeError(f"{name!r} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[{name}])")
@@ -187,6 +197,60 @@ class Telemetry:
         left_out = f"; an event was not located in {missed} of them, see unlocated" if missed else ""
         left_out += f"; at the end bodies overlap by {depth_words(self, self.overlap[-1])}" if ends_inside(self) else ""
         return f"Telemetry({len(self)} samples, {seconds}: {', '.join(self.columns)}{left_out}{stopped})"
+
+    def _sentence(self):
+        stopped = f"; fault: {self.fault}" if self.fault else ""
+        of = f" of {self.scene}" if self.scene else ""
+        return f"{len(self)} samples{of}, {len(self) * self.T:g} s at T = {1e3 * self.T:g} ms{stopped}"
+
+    def _facts(self):
+        listed = [Fact(name, getattr(self, name), self.units.get(name, ""), MEANINGS.get(name, "")) for name in self.columns]
+        raised = [Fact(name, getattr(self, name), "", MEANINGS[name]) for name in FLAGS if getattr(self, name).any()]
+        rest = [fact for fact in facts(self) if fact.name in ("T", "delay", "every", "paddle", "parameters", "changes")]
+        return [*listed, *raised, *rest]
+
+    def _is_open(self, fact):
+        return isinstance(fact.value, np.ndarray)
+
+    def _figure(self):
+        return thumbnail(self)
+
+    def _details(self):
+        yield "In words", repr(self)
+
+    def to_pandas(self) -> Any:
+        """The record as a ``pandas.DataFrame`` over t, SI; its ``attrs`` have units, parameters, scene, paddle and T.
+
+        Raises
+        ------
+        AnalysisError
+            Where pandas, which is optional, is not installed.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(hl.wall(k=200), duration="10 ms", v=0.1)
+        >>> table = log.to_pandas()
+        >>> list(table.columns), table.attrs["units"]["F"]
+        (['x', 'v', 'F'], 'N')
+        """
+        raised = [name for name in FLAGS if getattr(self, name).any()]
+        columns = {name: getattr(self, name) for name in (*self.columns, *raised)}
+        return frame(columns, self.units, **self._about()).set_index("t")
+
+    def to_xarray(self) -> Any:
+        """The record as an ``xarray.Dataset`` over t, SI; each variable has its unit in ``attrs["units"]``.
+
+        Raises
+        ------
+        AnalysisError
+            Where xarray, which is optional, is not installed.
+        """
+        variables = {name: (("t",), getattr(self, name)) for name in self.columns if name != "t"}
+        return labelled(variables, {"t": self.t}, self.units, **self._about())
+
+    def _about(self):
+        return {"parameters": self.parameters, "scene": self.scene, "paddle": self.paddle, "T": self.T}
 
     def save(self, path: File) -> Path:
         """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..base.arguments import having, number
+from ..base.shows_itself import ShowsItself
 from ..base.unusual import DEVICE, warn_of_unusual
 from ..errors import AnalysisError, PaddleError
 
@@ -29,7 +30,7 @@ _WHY = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Device:
+class Device(ShowsItself):
     """The numbers of a paddle, for a limit or a bound where no paddle is at hand.
 
     A limit asks for the numbers that it depends on, and refuses in words where one is missing.
@@ -98,6 +99,12 @@ class Device:
                 warn_of_unusual(name, value, _UNITS[name], DEVICE.get(name))
         if self.velocity not in ("backward_difference", "measured"):
             raise PaddleError(f"velocity = {self.velocity!r}; needs 'backward_difference' or 'measured'")
+
+    def _sentence(self):
+        return f"the numbers of a paddle: {self}"
+
+    def _line(self):
+        return f"Device({self})"
 
     def __str__(self) -> str:
         known = {f.name: getattr(self, f.name) for f in fields(self) if f.name in _UNITS}

@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from ..base.arguments import number
+from ..base.shows_itself import ShowsItself
 from ..base.unusual import DEVICE, warn_of_unusual
 from ..compiler.ir.program import Program
 from ..compiler.tick.compile_scene import compile
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from ..base.telemetry import Telemetry
 
 
-class Paddle(ABC):
+class Paddle(ShowsItself, ABC):
     """A one-axis haptic device, simulated or real.
 
     A paddle samples its handle every T seconds, runs the scene's program on the sample, and applies the force until the
@@ -34,6 +35,7 @@ class Paddle(ABC):
         Where v(n) comes from; "measured" is exact and exists in simulation only.
     """
 
+    hidden = ("board", "settings")
     T: float
 
     @property

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.arguments import number
 from ..base.drawing import house_style, new_figure, scale_axis, style_of
+from ..base.shows_itself import ShowsItself, Tabular
 from ..device.hand.hand import Hand
 from ..errors import AnalysisError
 from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
@@ -30,15 +31,16 @@ REST = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Rendered:
+class Rendered(ShowsItself):
     """One task on one display.
 
     Attributes
     ----------
     display : str
     k, mass, damping, friction : float
-        What the hand felt, by the force sensor's record: mass, damping and Coulomb friction moving freely, by least
-        squares; k holding still in the wall, or by least squares where it still moves. SI.
+        Stiffness [N/m], mass [kg], damping [N s/m] and Coulomb friction [N]: what the hand felt, by the force sensor's
+        record. Mass, damping and friction moving freely, by least squares; k holding still in the wall, or by least
+        squares where it still moves.
     misfit : float
         What mass, damping and friction leave of the force felt moving freely, root mean square [N]: friction below it says
         nothing.
@@ -119,7 +121,7 @@ def _task(t):
 
 
 @dataclass(frozen=True, eq=False)
-class Displays:
+class Displays(Tabular):
     """Both displays over several stiffnesses.
 
     Attributes
@@ -131,6 +133,11 @@ class Displays:
 
     rows: tuple[Rendered, ...]
     limits: dict[str, float]
+
+    def _sentence(self):
+        asked = ", ".join(f"{k:g}" for k in dict.fromkeys(row.wanted for row in self.rows))
+        unstable = sum(row.state == "unstable" for row in self.rows)
+        return f"walls of {asked} N/m on both displays, {unstable} of {len(self.rows)} unstable"
 
     def __str__(self) -> str:
         limits = ", ".join(f"{name} {limit:.4g} N/m" for name, limit in self.limits.items())

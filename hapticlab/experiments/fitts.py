@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.drawing import FRAME, house_style, new_figure, style_of
+from ..base.shows_itself import ShowsItself, Tabular
 from ..device.hand.intents import Intent
 from ..device.hand.reacting_hand import REACTION, Reacting
 from ..errors import AnalysisError
@@ -37,7 +38,7 @@ EFFECTIVE = math.sqrt(2 * math.pi * math.e)
 
 
 @dataclass(frozen=True)
-class Targets:
+class Targets(ShowsItself):
     """Movements between two targets of one width.
 
     Attributes
@@ -77,7 +78,7 @@ class Targets:
 
 
 @dataclass(frozen=True)
-class Fitts:
+class Fitts(Tabular):
     """Movement times over several targets.
 
     Attributes

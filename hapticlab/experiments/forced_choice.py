@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.arguments import instance
 from ..base.drawing import COLD, WARM, house_style, new_figure, scale_axis
+from ..base.shows_itself import ShowsItself, Tabular
 from ..device.setup.person import Person
 from ..errors import AnalysisError
 from .observers import PersonObserver, SimulatedObserver
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Trial:
+class Trial(ShowsItself):
     """One comparison: the level ln(comparison/standard), what was shown first and second, and the answer."""
 
     level: float
@@ -44,7 +45,7 @@ class Trial:
 
 
 @dataclass(frozen=True)
-class ForcedChoice:
+class ForcedChoice(Tabular):
     """What was asked and answered.
 
     Attributes

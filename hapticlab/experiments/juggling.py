@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.arguments import choice, number, numbers
 from ..base.drawing import house_style, new_figure, style_of
+from ..base.shows_itself import ShowsItself
 from ..base.telemetry import Telemetry
 from ..device.hand.reacting_hand import REACTION, Reacting
 from ..library.contacts import ball_on_the_paddle
@@ -28,7 +29,7 @@ WORDS = {"vision": "sight", "touch": "touch", "both": "sight and touch", "none":
 
 
 @dataclass(frozen=True, eq=False)
-class Juggle:
+class Juggle(ShowsItself):
     """How a ball was kept up.
 
     Attributes
@@ -89,7 +90,7 @@ class Juggle:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Perception:
+class Perception(ShowsItself):
     """How sharply a person sees and feels, and how late.
 
     Parameters

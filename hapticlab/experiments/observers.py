@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..base.shows_itself import ShowsItself
 from ..device.setup.person import Person
 from ..errors import AnalysisError
 from .response_curves import Psychometric
@@ -23,7 +24,7 @@ INTERVALS: dict[Answer, str] = {"first": "the first one", "second": "the second 
 
 
 @dataclass(frozen=True, kw_only=True)
-class SimulatedObserver:
+class SimulatedObserver(ShowsItself):
     """An observer of signal detection theory who feels the recorded force.
 
     What is felt of a presentation, its logarithm, is blurred by Gaussian noise of standard deviation ln(1 + weber); the
@@ -88,7 +89,7 @@ class SimulatedObserver:
 
 
 @dataclass(frozen=True)
-class PersonObserver:
+class PersonObserver(ShowsItself):
     """A person at the paddle, asked at the terminal.
 
     Parameters

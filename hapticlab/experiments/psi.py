@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .likelihood import CERTAIN
 from .response_curves import rise
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Grid:
+class Grid(ShowsItself):
     """The levels, thresholds and slopes over which the psi method keeps its belief.
 
     Parameters
@@ -50,7 +51,7 @@ class Grid:
 GRID = Grid()
 
 
-class Psi:
+class Psi(ShowsItself):
     """Bayesian adaptive estimation of threshold and slope; L. L. Kontsevich and C. W. Tyler, *Vision Res.* 39 (1999) 2729.
 
     A probability of every threshold and slope on a grid is kept; the next level is the one whose answer is expected to
@@ -150,7 +151,7 @@ class Psi:
         return f"psi, {self.most_trials} trials at levels from {self.levels[0]:.3g} to {self.levels[-1]:.3g}"
 
 
-class ConstantLevels:
+class ConstantLevels(ShowsItself):
     """Method of constant stimuli: each level so many times, in an order drawn from the seed.
 
     Examples

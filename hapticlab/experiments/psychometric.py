@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.arguments import choice
 from ..base.drawing import COLD, WARM, house_style, new_figure, scale_axis, style_of
+from ..base.shows_itself import ShowsItself
 from ..base.statistics import chi_squared
 from ..errors import AnalysisError
 from .likelihood import MOST_LAPSES, Likelihood
@@ -27,7 +28,7 @@ ENOUGH = 100
 
 
 @dataclass(frozen=True, eq=False)
-class PsychometricFit:
+class PsychometricFit(ShowsItself):
     """A psychometric function and what is known of it.
 
     Attributes
@@ -88,7 +89,7 @@ class PsychometricFit:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Intervals:
+class Intervals(ShowsItself):
     """How sure the intervals of a fit are, and by how many samples drawn of it.
 
     Parameters

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.arguments import choice, instance, number, numbers
 from ..base.drawing import house_style, new_figure, style_of
+from ..base.shows_itself import ShowsItself
 from ..base.telemetry import Telemetry
 from ..device.hand.hand import UNITS
 from ..device.hand.intents import Intent, MinimumJerk
@@ -45,7 +46,7 @@ class Path(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Load:
+class Load(ShowsItself):
     """What a person believes to move, beside their own hand.
 
     Parameters
@@ -74,7 +75,7 @@ class Load:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Control:
+class Control(ShowsItself):
     """By what a person moves a handle: by knowing the load, by looking, or by both.
 
     Parameters
@@ -115,7 +116,7 @@ CONTROL = Control()
 
 
 @dataclass(frozen=True, eq=False)
-class Reach:
+class Reach(ShowsItself):
     """How a reach went.
 
     Attributes

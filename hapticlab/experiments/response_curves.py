@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from ..base.arguments import choice
+from ..base.shows_itself import ShowsItself
 from ..base.statistics import normal
 from ..errors import AnalysisError
 
@@ -23,7 +24,7 @@ ROOT_2, ROOT_PI = math.sqrt(2), math.sqrt(math.pi)
 
 
 @dataclass(frozen=True)
-class Psychometric:
+class Psychometric(ShowsItself):
     """Psychometric function P = guess + (1 - guess - lapse) F(level).
 
     ===========  =====================================  ====================================================

@@ -10,6 +10,7 @@ import numpy as np
 from ..analysis.records.energy import energy
 from ..base.arguments import number
 from ..base.drawing import house_style, new_figure, style_of
+from ..base.shows_itself import ShowsItself, Tabular
 from ..base.telemetry import Telemetry
 from ..device.hand.intents import Tremor
 from ..errors import PaddleError
@@ -33,7 +34,7 @@ BAND = (6.0, 14.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Assisted:
+class Assisted(ShowsItself):
     """One hand on one path, with one scene.
 
     Attributes
@@ -56,14 +57,22 @@ class Assisted:
     peak_force: float
     work: float
     log: Telemetry
+    hidden = ("log",)
+
+    def __str__(self) -> str:
+        return f"{self.scene}: error {1e3 * self.error:.4g} mm, tremor {1e3 * self.tremor:.4g} mm"
 
 
 @dataclass(frozen=True, eq=False)
-class Assistance:
+class Assistance(Tabular):
     """The same hand, tremor and path with several scenes; the first row is the hand alone."""
 
     rows: tuple[Assisted, ...]
     wanted: Array
+
+    def _sentence(self):
+        least = min(self.rows, key=lambda row: row.error)
+        return f"{len(self.rows)} scenes with the same hand, tremor and path; the smallest error has {least.scene}"
 
     def __str__(self) -> str:
         lines = [f"{'':<24}{'error [mm]':>12}{'tremor [mm]':>13}{'peak force [N]':>16}{'work taken [mJ]':>17}"]

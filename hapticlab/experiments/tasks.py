@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import number
+from ..base.shows_itself import ShowsItself
 from ..device.hand.hand import Hand
 from ..device.hand.reacting_hand import Reacting
 from ..device.simulated.closed_loop import link, load_linked
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task:
+class Task(ShowsItself):
     """A property of a scene that differs between two presentations.
 
     Attributes

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.arguments import numbers
+from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ ENOUGH = 20
 
 
 @dataclass(frozen=True, kw_only=True)
-class Levels:
+class Levels(ShowsItself):
     """The lowest and the highest level that a staircase may ask.
 
     Parameters
@@ -46,7 +47,7 @@ class Levels:
 LEVELS = Levels()
 
 
-class UpDown:
+class UpDown(ShowsItself):
     """Transformed and weighted up-down staircase: after ``down`` right answers in a row a step down, after a wrong one up.
 
     It goes towards the level where ``(weight/(1 + weight))^(1/down)`` of the answers are right: 71 % for two down, one

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..base.drawing import COLD, FRAME, STYLES, house_style, new_figure
+from ..base.grid import Grid
+from ..base.shows_itself import ShowsItself, Tabular
 from ..errors import AnalysisError
 from .sensor import DITHERED, explains, neighbours
 
@@ -23,7 +25,7 @@ BEYOND = 4.0
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(ShowsItself):
     """A constant and its confidence interval, in ``unit``.
 
     Examples
@@ -55,7 +57,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Found(Tabular):
     """Constants found from records; ``found["m"]`` is an :class:`Estimate`. Print it, or plot what it left.
 
     An identification has a class of its own below this one: ``about``, ``constants`` and what stands between add to it.
@@ -85,6 +87,7 @@ class Found:
     measured, fitted : array, shape (N,)
         Positions [m] of all records, one after the other.
     T : float
+        [s]
     """
 
     about: ClassVar[str]
@@ -119,6 +122,13 @@ class Found:
         """Whether what is left looks like noise; without dither, like counting: less than a count does not show."""
         counting = 0.0 if self.dithered else self.quantum
         return bool(explains((self.measured - self.fitted)[:, None], self.measured[:, None], counting)[0])
+
+    hidden = ("about", "lacking", "advice", "above", "bounded", "constants")
+
+    def _tables(self):
+        grid = Grid.of(self.estimates, "value", "low", "high", "unit")
+        called = [self.constants[name][0] for name in self.estimates]
+        yield "", Grid({"": list(self.estimates), "constant": called, **{k: v for k, v in grid.columns.items() if k}})
 
     def __str__(self) -> str:
         lines = [f"{self.about} identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]

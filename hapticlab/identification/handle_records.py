@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.arguments import number
+from ..base.shows_itself import ShowsItself
 from ..base.telemetry import Telemetry, check_record
 from ..errors import AnalysisError
 from .fit_result import told
@@ -31,7 +32,7 @@ FORCE_CONSTANT = (
 
 
 @dataclass(frozen=True, eq=False)
-class HandleRecord:
+class HandleRecord(ShowsItself):
     """A record of a free handle, and what is known to have been beside it.
 
     Attributes

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 
+from ..base.grid import Grid
+from ..base.shows_itself import ShowsItself, Tabular
 from ..base.telemetry import PaddleProfile
 from ..errors import SceneError
 from ..scene.scene import Scene
@@ -16,7 +18,7 @@ NOMINAL = PaddleProfile(
 
 
 @dataclass(frozen=True)
-class Entry:
+class Entry(ShowsItself):
     """One scene of the library.
 
     Attributes
@@ -58,7 +60,7 @@ class Entry:
         return f"{self.name}: {self.title}\n  passive on a paddle with b >= {self.b:g} N s/m; on an Uno: {rate}"
 
 
-class Catalogue(Mapping):
+class Catalogue(Tabular, Mapping):
     """Name -> :class:`Entry`; printing it lists them."""
 
     def __init__(self, entries):
@@ -77,6 +79,18 @@ class Catalogue(Mapping):
 
     def __len__(self):
         return len(self._entries)
+
+    def _sentence(self):
+        return f"{len(self)} scenes, each made by hl.library.NAME()"
+
+    def _tables(self):
+        rates = [f"{1 / entry.uno['T']:.0f} Hz" if entry.uno else "does not fit" for entry in self.values()]
+        columns = {
+            "name": list(self),
+            "what it is": [e.title for e in self.values()],
+            "passive from b": [e.b for e in self.values()],
+        }
+        yield "", Grid({**columns, "on an Uno": rates}, {"passive from b": "N s/m"})
 
     def __str__(self):
         return "\n".join(map(str, self.values()))

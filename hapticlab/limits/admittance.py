@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.arguments import number
+from ..base.shows_itself import ShowsItself
 from ..device.device import Device, known
 from ..errors import AnalysisError
 from .loop import Loop
@@ -46,7 +47,7 @@ SLOW = 1e-6
 
 
 @dataclass(frozen=True)
-class AdmittanceDesign:
+class AdmittanceDesign(ShowsItself):
     """The lightest body of an admittance display beside a damper, by the criterion for one device and servo.
 
     Attributes

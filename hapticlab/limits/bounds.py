@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..base.arguments import choice, number
+from ..base.grid import Grid
+from ..base.shows_itself import ShowsItself, Tabular
 from ..device.device import known
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
@@ -112,7 +114,7 @@ def diolaiti_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -
 
 
 @dataclass(frozen=True)
-class DiolaitiPoint:
+class DiolaitiPoint(ShowsItself):
     """One plain wall in the plane of Diolaiti et al. (2006): damping against the hold, Coulomb friction against the encoder.
 
     In a cycle of amplitude X at w the hold and the delay generate ``(1/2 + delay/T - beta) K T w X^2 pi`` more than damping
@@ -238,10 +240,17 @@ def gil_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Lim
 
 
 @dataclass(frozen=True)
-class Bounds:
+class Bounds(Tabular):
     """The bounds of one paddle and law, each a Limit or the sentence that says why it does not apply.
 
-    ``law`` is the one the bounds are of: "backward_difference" where "half_sample" was asked for on an estimated velocity.
+    Attributes
+    ----------
+    law : str
+        The one the bounds are of: "backward_difference" where "half_sample" was asked for on an estimated velocity.
+    B : float
+        Virtual damping [N s/m].
+    found : dict of str to Limit or str
+        By name.
     """
 
     law: LawName
@@ -250,6 +259,16 @@ class Bounds:
 
     def __getitem__(self, name: str) -> Limit | str:
         return self.found[name]
+
+    hidden = ("found",)
+
+    def _tables(self):
+        rows = [
+            (limit.K, limit.kind, limit.reason) if isinstance(limit, Limit) else (math.nan, "does not apply", limit)
+            for limit in self.found.values()
+        ]
+        columns = dict(zip(("K", "kind", "reason"), zip(*rows, strict=True), strict=True))
+        yield "", Grid({"bound": list(self.found), **columns}, {"K": "N/m"})
 
     def __str__(self) -> str:
         lines = [f"largest stiffness K, law {self.law}, B = {self.B:g} N s/m"]

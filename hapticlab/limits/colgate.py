@@ -27,6 +27,7 @@ import numpy as np
 
 from ..base.arguments import instance, number
 from ..base.roots import root
+from ..base.shows_itself import ShowsItself
 from ..device.device import known
 from ..errors import AnalysisError
 from .limit import MOST_PERIODS, whole_and_fraction
@@ -48,7 +49,7 @@ SETTLED = 1e-13
 
 
 @dataclass(frozen=True)
-class PassivityMargin:
+class PassivityMargin(ShowsItself):
     """What a law asks of a device's damping at every frequency, and what is left.
 
     Attributes

@@ -26,6 +26,7 @@ import numpy as np
 
 from ..base.arguments import number
 from ..base.roots import minimum
+from ..base.shows_itself import ShowsItself
 from ..device.device import known
 from ..errors import AnalysisError
 from .limit import MOST_PERIODS, whole_and_fraction
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class CouplerDesign:
+class CouplerDesign(ShowsItself):
     """The stiffest spring of a virtual coupler beside a damper, absolutely stable on one device.
 
     Attributes

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 
 from ..base.arguments import number
 from ..base.drawing import STYLES, house_style, new_figure
+from ..base.shows_itself import ShowsItself, Tabular
 from ..device.device import known
 from ..errors import AnalysisError
 from .limit import whole_and_fraction
@@ -39,8 +40,16 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One part: its index [N s/m], an excess where positive and a shortage where negative, and why."""
+class Entry(ShowsItself):
+    """One part: its index, an excess where positive and a shortage where negative, and why.
+
+    Attributes
+    ----------
+    name : str
+    index : float
+        [N s/m]
+    reason : str
+    """
 
     name: str
     index: float
@@ -51,7 +60,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Ledger:
+class Ledger(Tabular):
     """Excess and shortage of passivity of the parts, and what is left.
 
     Attributes
@@ -80,6 +89,9 @@ class Ledger:
     def gain(self) -> float:
         """Most that the hand's force is amplified into velocity, in the mean of squares [m/(N s)]: 1/index."""
         return 1 / self.index if self.bounded and self.index > 0 else float("inf")
+
+    def _sentence(self):
+        return " ".join(str(self).split("\n")[len(self.entries)].split())
 
     def __str__(self) -> str:
         told = "passive in every passive hand" if self.passive else "nothing proved: more is spent than there is"

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.arguments import instance
+from ..base.shows_itself import ShowsItself
 from ..device.device import Device
 from ..errors import AnalysisError
 from .colgate import passivity_margin
@@ -40,7 +41,7 @@ WINDOW = 1e-3
 
 
 @dataclass(frozen=True)
-class PassivityIndices:
+class PassivityIndices(ShowsItself):
     """Indices of a held law as a port, and where each is reached.
 
     Attributes

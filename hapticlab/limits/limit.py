@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from ..base.guesses import Guessed
+from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .plots import plot_limit
 
@@ -22,7 +23,7 @@ class AnyHand(str):
 
 
 @dataclass(frozen=True)
-class Limit(Guessed):
+class Limit(ShowsItself, Guessed):
     """The largest stiffness, and what it promises.
 
     Attributes

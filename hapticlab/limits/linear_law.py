@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import choice, number, period
+from ..base.shows_itself import ShowsItself
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
@@ -30,7 +31,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class LinearLaw:
+class LinearLaw(ShowsItself):
     """A force that is a linear function of the positions sampled so far, H(z): what the bounds of a law are read from.
 
     A law that looks at an exact velocity, Eq. (23.3), has no H(z) in position and cannot be one.
@@ -253,8 +254,6 @@ class LinearLaw:
             return f"{self.name}: F[n] = {force}, T = {1e3 * self.T:g} ms"
         stiffness = "none" if math.isnan(self.stiffness) else f"{self.stiffness:.6g} N/m"
         return f"{self.name}: {len(self.A)} states, stiffness at rest {stiffness}, T = {1e3 * self.T:g} ms"
-
-    __repr__ = __str__
 
 
 def _numbers(name, part, given, shape):

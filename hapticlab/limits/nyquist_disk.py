@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.arguments import number
+from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .colgate import passivity_margin
 from .limit import whole_and_fraction
@@ -39,7 +40,7 @@ INFINITE = 1e9
 
 
 @dataclass(frozen=True)
-class NyquistDisk:
+class NyquistDisk(ShowsItself):
     """The disk of passive hands at each theta = w T, 0 < theta <= pi, and where a law lies against it.
 
     Attributes

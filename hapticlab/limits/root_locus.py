@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.drawing import HATCHED, STYLES, house_style, new_figure
+from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .limit import Limit
 from .loop import Loop
@@ -30,7 +31,7 @@ MOST_POINTS = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class RootLocus:
+class RootLocus(ShowsItself):
     """The poles of handle, hand, delay and law at many stiffnesses.
 
     Attributes
@@ -75,8 +76,6 @@ class RootLocus:
         ]
         lines += [f"  poles on the unit circle at K = {K:.6g} N/m, {f:.4g} Hz" for K, f in self.crossings]
         return "\n".join(lines)
-
-    __repr__ = __str__
 
 
 def root_locus(

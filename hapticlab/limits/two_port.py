@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.shows_itself import ShowsItself
 from .plots import plot_two_port
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def stopped(frequency: float | None) -> str:
 
 
 @dataclass(frozen=True)
-class TwoPort:
+class TwoPort(ShowsItself):
     """A display between a hand and a virtual environment.
 
     Attributes

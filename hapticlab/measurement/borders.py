@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..base.shows_itself import ShowsItself
+
 #: parts of the first stiffness tried before none is said to pass
 SOFTER = 1e-2
 
 
 @dataclass(frozen=True)
-class Border:
+class Border(ShowsItself):
     """A stiffness up to which walls pass, found from several starts; it prints as the interval.
 
     Attributes

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, get_args
 
 from ..base.arguments import choice, count, numbers
+from ..base.shows_itself import ShowsItself
 from .impedance_signal import How
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Excitation:
+class Excitation(ShowsItself):
     """What shakes the handle while its impedance is measured.
 
     Parameters
@@ -52,7 +53,7 @@ class Excitation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Averaging:
+class Averaging(ShowsItself):
     """How much is recorded, and what of it is kept.
 
     Parameters
@@ -83,7 +84,7 @@ class Averaging:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Safety:
+class Safety(ShowsItself):
     """What the handle of a board may do while its motor shakes it; a simulated handle is free.
 
     Parameters

@@ -8,6 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from ..base.arguments import having, instance, number
+from ..base.shows_itself import ShowsItself
 from ..device.live_parameters import named_values
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
@@ -36,7 +37,7 @@ SEARCH, STARTS, JUDGEMENT = Search(), Starts(), Judgement()
 
 
 @dataclass(frozen=True, eq=False)
-class LargestStiffness:
+class LargestStiffness(ShowsItself):
     """Outcome of a search, with every trial it made; ``float(found)`` is the stiffness [N/m] that both borders allow.
 
     Attributes

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..base.grid import Grid
+from ..base.shows_itself import Tabular
 from ..errors import AnalysisError
 from .impedance_plot import plot_impedance
 from .spectrum import Response
@@ -23,7 +25,7 @@ Drive = Literal["hand", "motor"]
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredImpedance:
+class MeasuredImpedance(Tabular):
     """Impedances Z = F/v at the handle [N s/m], complex, one a frequency.
 
     Attributes
@@ -123,6 +125,18 @@ class MeasuredImpedance:
     def plot(self) -> Figure:
         """Draw magnitude, and real part: measured, the law's own, the ideal."""
         return plot_impedance(self)
+
+    hidden = ("measured", "other")
+
+    def _sentence(self):
+        span = f"{self.frequency[0]:.4g} to {self.frequency[-1]:.4g} Hz"
+        return f"impedance at {len(self.frequency)} frequencies, {span}: {self.about}"
+
+    def _tables(self):
+        Z, law = self.rendered, np.abs(self.rendered / self.law)
+        part = {} if self.ideal is None else {"|Z/ideal|": np.abs(self.transparency)}
+        columns = {"f": self.frequency, "|Z|": np.abs(Z), "+-": self.radius, "Re Z": Z.real, "|Z/law|": law, **part}
+        yield "", Grid(columns | {"coherence": self.coherence}, {"f": "Hz", "|Z|": "N s/m", "+-": "N s/m", "Re Z": "N s/m"})
 
     def __str__(self) -> str:
         """Print a table: rendered, and what the driver feels, each with its 95 % circle."""

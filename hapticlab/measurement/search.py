@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import count, number, numbers
+from ..base.shows_itself import ShowsItself
 from ..device.hand.hand import Hand
 from ..errors import AnalysisError
 
 
 @dataclass(frozen=True, kw_only=True)
-class Search:
+class Search(ShowsItself):
     """Which walls a search tries: from the softest on, by a ratio, until the answer is close enough.
 
     Parameters
@@ -45,7 +46,7 @@ class Search:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Starts:
+class Starts(ShowsItself):
     """From which starts every wall is tried, with each push and each hand.
 
     The handle is let go before the wall, or, where a sensor's counts may make it buzz, at rest in the wall already.
@@ -94,7 +95,7 @@ def _each(given):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Judgement:
+class Judgement(ShowsItself):
     """How long a trial of a wall lasts, and what it may do and still stand.
 
     Parameters

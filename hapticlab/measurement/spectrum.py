@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.shows_itself import ShowsItself
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -17,7 +19,7 @@ CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class Response(ShowsItself):
     """y/x at every line, from blocks of one period each.
 
     Attributes
@@ -32,6 +34,9 @@ class Response:
     value: NDArray[np.complex128]
     radius: Array
     coherence: Array
+
+    def __str__(self) -> str:
+        return f"a ratio of spectra at {len(self.value)} lines, coherence {self.coherence.min():.3f} at the least"
 
 
 def lines_in(blocks: Array, lines: NDArray[np.int_]) -> NDArray[np.complex128]:

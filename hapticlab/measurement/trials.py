@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..analysis.records.chatter import chatter
+from ..base.shows_itself import ShowsItself
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
 from ..scene.laws.chapter_laws import wall
@@ -44,7 +45,7 @@ JUMP = 3
 
 
 @dataclass(frozen=True)
-class Trial:
+class Trial(ShowsItself):
     """Outcome of one stiffness from one start.
 
     Attributes

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import number
+from ..base.grid import Grid
+from ..base.shows_itself import Tabular
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from .largest_stiffness import SEARCH, LargestStiffness, largest_stiffness
@@ -28,7 +30,7 @@ BELOW = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class ZWidth:
+class ZWidth(Tabular):
     """The K-B borders of a law on a paddle.
 
     Attributes
@@ -63,6 +65,16 @@ class ZWidth:
     def plot(self) -> Figure:
         """Draw both borders with passivity and exact stability."""
         return plot_border(self)
+
+    hidden = ("searches",)
+
+    def _tables(self):
+        columns = {"B": self.B, "K": self.K}
+        for name in ("unstable", "buzz"):
+            lowest, highest = getattr(self, name).T
+            columns |= {f"{name}, lowest": lowest, f"{name}, highest": highest}
+        columns |= {"passivity": self.passivity, "stability": self.stability}
+        yield "", Grid(columns, dict.fromkeys(columns, "N/m") | {"B": "N s/m"})
 
     def __str__(self) -> str:
         about = next((s.about for s in self.searches if s.trials), "no trial made")

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.arguments import number
 from ..base.drawing import house_style, new_figure
+from ..base.shows_itself import ShowsItself
 from ..device.device import Device, known
 from ..errors import AnalysisError
 from ..limits.loop import Loop
@@ -27,7 +28,7 @@ NEAR = 1e-6
 
 
 @dataclass(frozen=True)
-class CompensationLimit:
+class CompensationLimit(ShowsItself):
     """The parts of the device's friction that may be compensated; printing it says so in words.
 
     Attributes

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import sympy as sp
 
+from ..base.shows_itself import ShowsItself
 from ..errors import SceneError
 from ..scene.notation.symbols import delay, n, signal, when
 from .digital import digital_force, motor_limit
@@ -29,7 +30,7 @@ BETWEEN = {"pairs": None, "half_sample": half_sample_force, "digital": digital_f
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pairs:
+class Pairs(ShowsItself):
     """The pairs of held forces of a dead-beat wall.
 
     Parameters
@@ -163,7 +164,7 @@ def _inverse(model):
 
 
 @dataclass(frozen=True)
-class DeadbeatGains:
+class DeadbeatGains(ShowsItself):
     """What an error of the sensed state changes the two forces of a pair by.
 
     Attributes

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..base.shows_itself import ShowsItself
 from ..scene.notation.symbols import when
 from .model import WallModel
 from .scene_lines import Lines, number
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class DigitalGains:
+class DigitalGains(ShowsItself):
     """Gains that put the poles of a sampled wall where the target's are, z = e^(s T).
 
     Attributes

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..base.shows_itself import ShowsItself
 from ..compiler.boards.cost import Board, Cost, cost
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError, ProgramLimitError
@@ -34,7 +35,7 @@ CANDIDATES: tuple[tuple[str, Callable, dict], ...] = (
 
 
 @dataclass(frozen=True)
-class BoardWall:
+class BoardWall(ShowsItself):
     """The best wall that fits, and what did not.
 
     Attributes

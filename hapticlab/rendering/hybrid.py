@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.drawing import axis_label, house_style, new_figure, style_of
+from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .model import WallModel
 
@@ -29,7 +30,7 @@ MOST = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class HybridMotion:
+class HybridMotion(ShowsItself):
     """The exact motion against a wall, at the samples.
 
     Attributes

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.arguments import number
+from ..base.shows_itself import ShowsItself
 from ..device.device import known
 from ..device.hand.hand import Hand
 from ..device.simulated.transition import transition
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WallModel:
+class WallModel(ShowsItself):
     """Handle, hand and target wall in numbers.
 
     Attributes

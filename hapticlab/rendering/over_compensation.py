@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.arguments import number
 from ..base.drawing import WARM, house_style, new_figure
+from ..base.shows_itself import ShowsItself
 from ..base.units import in_si
 from ..device.simulated.closed_loop import link, load_linked
 from ..device.simulated.simulated_paddle import SimulatedPaddle
@@ -32,7 +33,7 @@ CHUNK = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class OverCompensation:
+class OverCompensation(ShowsItself):
     """What a paddle does for ever when its dry friction is compensated, over the part that is; prints and plots.
 
     Attributes

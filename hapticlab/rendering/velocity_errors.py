@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.drawing import house_style, new_figure, style_of
+from ..base.shows_itself import ShowsItself, Tabular
 from ..base.telemetry import Telemetry
 from ..compiler.boards.cost import cost
 from ..compiler.engines.engine import load
@@ -27,7 +28,7 @@ MARKERS = "osD^v*P"
 
 
 @dataclass(frozen=True)
-class VelocityError:
+class VelocityError(ShowsItself):
     """What one estimate says of a record whose velocity is known.
 
     Attributes
@@ -61,7 +62,7 @@ class VelocityError:
 
 
 @dataclass(frozen=True)
-class VelocityErrors:
+class VelocityErrors(Tabular):
     """Estimators on one record, in the order given; prints a table and plots.
 
     Attributes
@@ -82,6 +83,10 @@ class VelocityErrors:
 
     def __getitem__(self, name: str) -> VelocityError:
         return next(row for row in self.rows if row.name == name)
+
+    def _sentence(self):
+        least = min(self.rows, key=lambda row: row.rms)
+        return f"{len(self.rows)} estimates of one velocity, T = {1e3 * self.T:g} ms; the smallest error has {least.name}"
 
     def __str__(self) -> str:
         titles = f"{'velocity':<34} {'rms mm/s':>9} {'lag ms':>9} {'noise mm/s':>10} {'cycles':>8}"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import sympy as sp
 
 from ..base.arguments import choice
+from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from ..scene.laws.chapter_laws import wall
 from ..scene.laws.taps import SPRING_LAWS
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class WallLaw:
+class WallLaw(ShowsItself):
     """A wall as a law renders it, and the paddle it needs.
 
     Attributes
@@ -44,7 +45,7 @@ class WallLaw:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rendering:
+class Rendering(ShowsItself):
     """How laws that are compared render a wall, beside their own formulas.
 
     Parameters

@@ -8,16 +8,18 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..base.shows_itself import Typeset
 from ..errors import MassError, SceneError
 from .aliases import definitions, substituted
 from .mechanics.lagrange import Mechanics
 from .notation.checks import applied
 from .notation.derivative import Rate
 from .notation.symbols import t
+from .notation.typeset import typeset
 
 
 @dataclass(frozen=True)
-class ExplicitForm:
+class ExplicitForm(Typeset):
     """``M a = f`` with the difference equations and the outputs beside it.
 
     Attributes
@@ -42,6 +44,17 @@ class ExplicitForm:
     force: sp.Expr
     watch: dict
     models: tuple = ()
+
+    def _sentence(self):
+        return f"the equations solved for {len(self.coordinates)} accelerations and {len(self.updates)} signals"
+
+    def _facts(self):
+        return []
+
+    def _equations(self):
+        rows = [sum(m * a for m, a in zip(row, self.unknowns, strict=True)) for row in self.M]
+        lines = [f"{typeset(row)} = {typeset(right)}" for row, right in zip(rows, self.f, strict=True)]
+        return [f"F_e = {typeset(self.force)}", *lines, *(f"{typeset(y)} = {typeset(expr)}" for y, expr in self.updates.items())]
 
     def __str__(self):
         lines = [f"F = {self.force}"]

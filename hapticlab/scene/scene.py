@@ -6,10 +6,14 @@ from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from textwrap import shorten
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ..base.facts import Fact
+from ..base.grid import Grid
+from ..base.shows_itself import Typeset
 from ..base.unusual import SCENE, warn_of_unusual
 from ..errors import ParameterError, SceneError
 from .explicit import explicit_form
@@ -28,6 +32,7 @@ from .notation.checks import (
     parameters_in,
     written_in,
 )
+from .notation.typeset import typeset
 from .notation.units import unit_of
 from .notation.written import expression, no_scene
 
@@ -38,7 +43,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(Typeset):
     """What is felt at the handle: a force law, and the equations of motion it needs.
 
     Parameters
@@ -168,10 +173,26 @@ class Scene:
         shown = (f"{p.name} = {self.values.get(p.name, '?')} {p.unit}" for p in self.parameters.values())
         return "\n".join([*lines, "  " + (", ".join(shown) or "no parameters")])
 
-    def _repr_latex_(self):
-        shown = [part for e in self.eom for part in (e.equations if is_model(e) else (e,))]
-        rows = [f"F_e = {sp.latex(self.force)}", *map(sp.latex, shown)]
-        return "$\\displaystyle \\begin{array}{l}" + r" \\ ".join(rows) + "\\end{array}$"
+    def _sentence(self):
+        names = ", ".join(type(q).__name__ for q in self.coordinates)
+        moving = f" and the equations of motion of {names}" if names else ""
+        unbound = ", ".join(name for name in self.parameters if name not in self.values)
+        return f"scene {self.name}: the force on the environment{moving}" + (
+            f"; without a value yet: {unbound}" if unbound else ""
+        )
+
+    def _line(self):
+        return f"Scene({shorten(f'{self.name}: F = {self.force}', 110, placeholder=' ...')})"
+
+    def _equations(self):
+        shown = [part for e in self.eom for part in (e._equations() if is_model(e) else (typeset(e),))]
+        return [f"F_e = {typeset(self.force)}", *shown]
+
+    def _facts(self):
+        return [Fact(name, self.values[name], one.unit, "") for name, one in self.parameters.items() if name in self.values]
+
+    def _tables(self):
+        yield "recorded beside x, v and F", Grid({"watch": list(self.watch), "unit": list(self.watch_units.values())})
 
 
 def _unit_shown(expr):

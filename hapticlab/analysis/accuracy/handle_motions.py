@@ -11,6 +11,7 @@ import sympy as sp
 
 from ...base.arguments import number
 from ...base.drawing import STYLES, house_style, new_figure
+from ...base.shows_itself import ShowsItself
 from ...compiler.algebra.graph import Graph, driven
 from ...errors import AnalysisError
 from ...scene.notation.derivative import Partial
@@ -31,7 +32,7 @@ ONSET = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class HandleMotion:
+class HandleMotion(ShowsItself):
     """A motion x(t) of the handle, as an expression of time.
 
     Attributes

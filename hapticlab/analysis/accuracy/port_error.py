@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ...base.shows_itself import ShowsItself
 from ...compiler.engines.engine import load
 from ...compiler.events.taylor_method import Taylor
 from ...compiler.ir.program import Program
@@ -27,15 +28,15 @@ WILD = 100
 
 
 @dataclass(frozen=True)
-class ForceError:
+class ForceError(ShowsItself):
     """Errors of a force, in N, and the size of what it was compared with.
 
     Attributes
     ----------
     max, rms : float
-        Of F(n) against F(n T): what the method, the hold and the estimates got wrong.
+        Of F(n) against F(n T) [N]: what the method, the hold and the estimates got wrong.
     hold, hold_rms : float
-        Of the held force against F(t) between the samples too: what the hand feels.
+        Of the held force against F(t) between the samples too [N]: what the hand feels.
     peak : float
         Largest \\|F(t)\\| [N].
     unstable_at : float
@@ -172,7 +173,7 @@ def _felt(reference, count, delay):
 
 
 @dataclass(frozen=True)
-class SensorFloor:
+class SensorFloor(ShowsItself):
     """Error of the force that an encoder alone causes [N], whatever the method, and the peak that it is a part of."""
 
     max: float

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.shows_itself import ShowsItself
 from ...compiler.algebra.graph import Graph
 from ...compiler.algebra.graph import driven as turning
 from ...compiler.engines.engine import load
@@ -43,7 +44,7 @@ EVERY = 16
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class Reference(ShowsItself):
     """F(t) of a scene whose handle moves as given, without sampling, hold and method.
 
     Attributes

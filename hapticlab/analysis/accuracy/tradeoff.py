@@ -11,6 +11,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from ...base.arguments import instance
+from ...base.shows_itself import Tabular
 from ...compiler.boards.cost import BOARDS
 from ...compiler.ir.options import choice, steps
 from ...compiler.methods.method_table import METHODS
@@ -176,7 +177,7 @@ def _step(T):
 
 
 @dataclass(frozen=True, eq=False)
-class Tradeoff:
+class Tradeoff(Tabular):
     """What :func:`tradeoff` found; printing it shows for each target what none beats, and the choice.
 
     Attributes
@@ -269,6 +270,11 @@ class Tradeoff:
         for target in self.targets:
             lines += ["", f"{target}: what none beats", self.front(target).brief(), str(self.choose(target=target, **asked))]
         return "\n".join(lines)
+
+    hidden = ("bench",)
+
+    def _tables(self):
+        yield from self.table._tables()
 
     def __str__(self) -> str:
         return self.summary()

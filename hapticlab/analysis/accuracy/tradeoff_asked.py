@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import TYPE_CHECKING, Literal
 
+from ...base.shows_itself import ShowsItself
 from ...compiler.events.taylor_method import Taylor
 from ...compiler.ir.options import choice, period
 from ...compiler.methods.chosen_method import chosen_method
@@ -30,7 +31,7 @@ def several(given):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tried:
+class Tried(ShowsItself):
     """The settings that a trade-off tries: every combination of these.
 
     Parameters
@@ -70,7 +71,7 @@ class Tried:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Conditions:
+class Conditions(ShowsItself):
     """What is the same for every setting of a trade-off: how the handle moves, and what the program is asked for.
 
     Parameters

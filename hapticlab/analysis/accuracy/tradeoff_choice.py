@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from ...base.shows_itself import ShowsItself
 from ...errors import AnalysisError
 from .tradeoff_rows import NOT_TRIED, REFUSED, TOO_LARGE, UNSURE, Row, percent
 
@@ -20,7 +21,7 @@ COARSEST = 0.1
 
 
 @dataclass(frozen=True)
-class Configuration:
+class Configuration(ShowsItself):
     """What was chosen: ``hl.compile(scene, **configuration.options)``.
 
     Attributes
@@ -57,7 +58,7 @@ class Configuration:
 
 
 @dataclass(frozen=True)
-class NotFeasible:
+class NotFeasible(ShowsItself):
     """Nothing meets what was asked; false where a truth is asked of it.
 
     Attributes

@@ -8,6 +8,8 @@ import math
 from dataclasses import asdict, astuple, dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
+from ...base.grid import Grid
+from ...base.shows_itself import ShowsItself, Tabular
 from ...compiler.methods.chosen_method import chosen_method
 
 if TYPE_CHECKING:
@@ -38,13 +40,15 @@ RAN = (OK.name, TOO_LARGE.name, *UNSURE)
 
 
 @dataclass(frozen=True)
-class Row:
+class Row(ShowsItself):
     """A setting of :func:`hapticlab.compile` on one target.
 
     Attributes
     ----------
-    method, T, substeps, hold, force_at, precision
-        The setting; T in seconds, precision "float32" or "float64".
+    T : float
+        Period [s].
+    method, substeps, hold, force_at, precision
+        The rest of the setting; precision is "float32" or "float64".
     target : str
         "pc" or the name of a board.
     err_max, err_rms, err_hold : float
@@ -59,7 +63,7 @@ class Row:
     cycles, measured : float or None
         Of one tick of the program on a board: predicted, typical; and as measured there. None on the pc.
     seconds : float
-        Time of a tick of the program: on the pc measured, on a board from its cycles.
+        Time of a tick of the program [s]: on the pc measured, on a board from its cycles.
     load : float
         Part of the period that is taken: on a board by the rest of the step and the telemetry too.
     margin, steps_per_contact : float or None
@@ -111,6 +115,10 @@ class Row:
         if not isinstance(self.status, Status):
             object.__setattr__(self, "status", Status(self.status))
 
+    def __str__(self) -> str:
+        held = f"error {percent(self.err_max)} at the samples, {percent(self.err_hold)} held; load {percent(self.load)}"
+        return f"{self.target}: {self.name}: {held if self.ran else self.why or self.status}"
+
     @property
     def passive(self) -> bool | None:
         """Whether the device is passive in every passive hand; None where that is not known."""
@@ -136,6 +144,9 @@ _HEADS = (
 )  # fmt: skip
 
 
+#: what a notebook shows of a row
+_SHOWN = ("target", "method", "T", "substeps", "hold", "precision", "err_max", "err_hold", "load", "b_req", "status")
+
 #: left out where rows of one target are compared, which all ran
 _ASIDE = ("target", "rms", "cycles", "time", "contact", "passive", "status")
 LEGEND = (
@@ -145,11 +156,21 @@ LEGEND = (
 )
 
 
-class Table(tuple):
+class Table(Tabular, tuple):
     """Rows of a trade-off; printing it shows them, one a line."""
 
     def __str__(self) -> str:
         return self._text(_HEADS)
+
+    def _sentence(self):
+        return f"{len(self)} settings on {len({row.target for row in self})} targets, {len(self.where(status='ok'))} of them ok"
+
+    def _tables(self):
+        yield "", Grid.of(self, *_SHOWN)
+
+    def to_pandas(self) -> Any:
+        """Every attribute of every row as a ``pandas.DataFrame`` in SI units, which its ``attrs["units"]`` names."""
+        return Grid.of(self).to_pandas()
 
     def brief(self) -> str:
         """Return the rows in lines of less than 120 columns, without their target and what is of little weight."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.drawing import STYLES, house_style, log_scales, new_figure
+from ...base.shows_itself import ShowsItself
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +22,7 @@ SOFT = "#8a8a8a"
 
 
 @dataclass(frozen=True, eq=False)
-class Impedance:
+class Impedance(ShowsItself):
     """What a scene is at its port.
 
     Attributes

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.arguments import number
+from ...base.shows_itself import ShowsItself
 from ...compiler.tick.compile_scene import compile
 from ...device.device import Device, known
 from ...errors import AnalysisError
@@ -31,7 +32,7 @@ TOLERANCE = 0.05
 
 
 @dataclass(frozen=True)
-class Reduction:
+class Reduction(ShowsItself):
     """A reduced scene and how far it is from the full one; printing it shows both.
 
     Attributes

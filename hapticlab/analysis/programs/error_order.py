@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...compiler.algebra.first_sample import numbers
 from ...compiler.algebra.graph import Graph, driven
 from ...compiler.ir.channels import short
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Order:
+class Order(ShowsItself):
     """The order of an error in T, with what sets it.
 
     Attributes

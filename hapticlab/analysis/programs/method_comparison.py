@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.drawing import house_style, new_figure, style_of
+from ...base.grid import Grid
+from ...base.shows_itself import Tabular
 from ...compiler.ir.options import choice
 from ...compiler.methods.method_table import METHODS
 
@@ -72,7 +74,7 @@ WITHOUT_STEPS = {
 }  # fmt: skip
 
 
-class Methods(Mapping[str, "Method | WithoutSteps"]):
+class Methods(Tabular, Mapping[str, "Method | WithoutSteps"]):
     """Methods by name; printing them makes a table, :meth:`plot` a picture."""
 
     def __init__(self, known):
@@ -87,6 +89,14 @@ class Methods(Mapping[str, "Method | WithoutSteps"]):
     def __len__(self) -> int:
         return len(self._known)
 
+    def _sentence(self):
+        return f"{len(self)} methods: order, cost, longest stable steps, and the energy that a step adds to a spring"
+
+    def _tables(self):
+        rows = [(m.order, m.evaluations, m.real, m.imaginary, *(_gain(m, y) for y in AT)) for m in self.values()]
+        heads = ("order", "evaluations", "h b/m below", "w h below", *(f"gain at w h = {y:g}" for y in AT))
+        yield "", Grid({"method": list(self), **dict(zip(heads, zip(*rows, strict=True), strict=True))})
+
     def __str__(self) -> str:
         gains = "".join(f"{f'gain at wh={y:g}':>15}" for y in AT)
         lines = [f"{'method':<28}{'order':>9}{'evaluations':>13}{'h b/m <':>10}{'wh <':>8}{gains}"]
@@ -94,8 +104,6 @@ class Methods(Mapping[str, "Method | WithoutSteps"]):
             gains = "".join(f"{_gain(m, y):>15}" for y in AT)
             lines.append(f"{name:<28}{m.order:>9}{m.evaluations:>13}{_shown(m.real):>10}{_shown(m.imaginary):>8}{gains}")
         return "\n".join([*lines, *_BESIDE])
-
-    __repr__ = __str__
 
     def plot(self, *names: str) -> Figure:
         """Draw where methods are stable: |R(z)| = 1 of y' = z y, and the largest omega h against the damping ratio.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ...base.drawing import STYLES, axis_label, house_style, new_figure
+from ...base.shows_itself import ShowsItself
 from ...base.telemetry import Telemetry, check_record
 from ...compiler.engines.engine import load
 from ...compiler.prune.constant_coefficients import leaves
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Replay:
+class Replay(ShowsItself):
     """A record with the channels of a view beside it.
 
     Attributes

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ...base.grid import Grid
+from ...base.shows_itself import ShowsItself
 from ...compiler.ir.program import Program
 from ...scene.scene import Scene
 
@@ -12,7 +14,7 @@ PART = "of these"
 
 
 @dataclass(frozen=True)
-class Item:
+class Item(ShowsItself):
     """One thing that is kept, left out or offered.
 
     Attributes
@@ -33,7 +35,7 @@ class Item:
 
 
 @dataclass(frozen=True)
-class Requirements:
+class Requirements(ShowsItself):
     """What a scene requires of a board; printing it says what was left out, why, and what it saves.
 
     Attributes
@@ -64,10 +66,13 @@ class Requirements:
     made_of: str = ""
     declined: str | None = None
 
-    def _tables(self):
+    def _groups(self):
         yield "kept", "", self.kept
         yield "left out", "saves", self.dropped
         yield "offered", "saves", self.offered
+
+    def _tables(self):
+        yield from ((title, Grid.of(group, "name", "kind", "saves", "why")) for title, _, group in self._groups())
 
     @property
     def _head(self):
@@ -86,20 +91,12 @@ class Requirements:
 
     def __str__(self) -> str:
         lines = [self._head]
-        items = [i for _, _, group in self._tables() for i in group]
+        items = [i for _, _, group in self._groups() for i in group]
         wide = max([len(i.name) for i in items], default=0)
-        for title, column, group in self._tables():
+        for title, column, group in self._groups():
             if group:
                 lines.append(f"{title:<{wide + 14}} {column:>6}")
                 for i in group:
                     saves = "" if i.saves is None else f"{i.saves:>6}"
                     lines.append(f"  {i.name:<{wide}}  {i.kind:<10}{saves:>6}  {i.why}")
         return "\n".join([*lines, *self._declined])
-
-    def _repr_markdown_(self) -> str:
-        rows = [f"**{self._head}**", "", "| | what | saves | why |", "|---|---|---|---|"]
-        for title, _, group in self._tables():
-            for i in group:
-                why, name = (text.replace("|", r"\|") for text in (i.why, i.name))
-                rows.append(f"| {title} | {i.kind} {name} | {'' if i.saves is None else i.saves} | {why} |")
-        return "\n".join([*rows, "", *self._declined])

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from ...base.shows_itself import ShowsItself
 from ...base.telemetry import Telemetry
 from .finding_plots import plot_chatter
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Chatter:
+class Chatter(ShowsItself):
     """What the last half of a record shows.
 
     Attributes

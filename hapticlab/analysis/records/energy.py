@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ...base.guesses import Guessed
+from ...base.shows_itself import ShowsItself
 from ...base.telemetry import check_record
 from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Energy(Guessed):
+class Energy(ShowsItself, Guessed):
     """The work exchanged between the handle and the rendered environment.
 
     Attributes

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...base.telemetry import check_record
 from ...errors import AnalysisError, SceneError
 from ...scene.contact.contact import friction
@@ -192,7 +193,7 @@ def _written_out(scene, stored, supplied, dissipated):
 
 
 @dataclass(frozen=True, eq=False)
-class Balance:
+class Balance(ShowsItself):
     """The energy books of a run, and what the port says beside them.
 
     Attributes

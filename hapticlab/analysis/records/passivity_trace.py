@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.drawing import STYLES, house_style, new_figure
+from ...base.shows_itself import ShowsItself
 from ...base.telemetry import check_record
 from ...errors import AnalysisError
 from .energy import energy
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class PassivityTrace:
+class PassivityTrace(ShowsItself):
     """Energy at the port along a record, beside what the observer saw and the controller took back.
 
     Attributes

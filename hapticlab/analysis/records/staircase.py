@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.drawing import FRAME, STYLES, house_style, new_figure
+from ...base.shows_itself import ShowsItself, Tabular
 from ...base.telemetry import check_record
 from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
@@ -24,7 +25,7 @@ NUMBERED = 16
 
 
 @dataclass(frozen=True)
-class Bounce:
+class Bounce(ShowsItself):
     """One completed penetration.
 
     Attributes
@@ -53,7 +54,7 @@ class Bounce:
 
 
 @dataclass(frozen=True, eq=False)
-class Staircase:
+class Staircase(Tabular):
     """The force that acted, against where the handle was, and what the steps leaked.
 
     Attributes
@@ -77,6 +78,13 @@ class Staircase:
     leak: Array
     moved: Array
     bounces: tuple[Bounce, ...]
+
+    def _sentence(self):
+        generated = sum(bounce.generated for bounce in self.bounces)
+        verb = "generated" if generated >= 0 else "dissipated"
+        penetrations = f"{len(self.bounces)} penetration{'s' * (len(self.bounces) != 1)}"
+        against = f"{verb} {1e3 * abs(generated):.4g} mJ against a spring of {self.K:g} N/m"
+        return f"{penetrations} {against}" if self.bounces else str(self)
 
     def __str__(self) -> str:
         lines = [f"{number}: {bounce}" for number, bounce in enumerate(self.bounces, 1)]

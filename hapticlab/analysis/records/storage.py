@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 
 from ...base.drawing import STYLES, house_style, new_figure
+from ...base.shows_itself import ShowsItself
 from ...base.telemetry import check_record
 from ...errors import AnalysisError
 from ...scene.notation.symbols import Parameter, lag_of, x
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Storage:
+class Storage(ShowsItself):
     """Eq. (23.9) along a record: W(x(t)) <= W(x(0)) + supply is asked for at every sample.
 
     Attributes

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.shows_itself import ShowsItself
 from ...compiler.methods.step_matrix import rising
 from ...errors import AnalysisError
 from ...limits.port import POINTS, negative, required, static_stiffness, unstable_pole
@@ -23,7 +24,7 @@ JUMP = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class PortLimit:
+class PortLimit(ShowsItself):
     """One operating point in one mode.
 
     Attributes

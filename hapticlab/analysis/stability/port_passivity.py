@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ...base.shows_itself import Tabular
 from ...device.device import known
 from ...errors import AnalysisError
 from ...scene.notation.written import no_scene
@@ -37,7 +38,7 @@ BEYOND = {
 
 
 @dataclass(frozen=True, eq=False)
-class PortPassivity:
+class PortPassivity(Tabular):
     """The damping that a scene asks of a device, and what the device has; printing it shows every mode.
 
     Attributes
@@ -124,8 +125,6 @@ class PortPassivity:
         if self.passive and self.kind != "linear":
             lines.append(f"  not covered: {BEYOND[self.kind]}. hl.passivity.worst_motion(paddle, scene) searches them.")
         return "\n".join(lines)
-
-    __repr__ = __str__
 
     def plot(self) -> Figure:
         """Draw the damping that each frequency asks of a device, in every mode."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself, Tabular
 from ...compiler.algebra.matrix_exponential import exponential
 from ...compiler.contacts.contact_steps import STEPS_PER_CONTACT
 from ...compiler.ir.options import period, steps
@@ -39,7 +40,7 @@ AMPLE = {"linear": 1.0, "piecewise linear": 1.5, "small-signal": 2.0}
 
 
 @dataclass(frozen=True, eq=False)
-class ModeLimit:
+class ModeLimit(ShowsItself):
     """One operating point in one mode.
 
     Attributes
@@ -72,7 +73,7 @@ class ModeLimit:
 
 
 @dataclass(frozen=True, eq=False)
-class StepLimit:
+class StepLimit(Tabular):
     """The longest stable step of a method on a scene, over all modes looked at; printing it shows them.
 
     Attributes
@@ -157,8 +158,6 @@ class StepLimit:
             where = m.mode if m.point in m.mode else f"{m.mode}; {m.point}"
             lines.append(f"  {1e3 * m.h_max:10.4g} {m.margin:8.3g} {m.energy_gain:10.2g} {m.steps_per_contact:13.3g}  {where}")
         return "\n".join(lines)
-
-    __repr__ = __str__
 
     def plot(self) -> Figure:
         """Draw the largest |eigenvalue| of a step against its length, in every mode."""

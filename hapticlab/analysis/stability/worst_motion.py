@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 
 from ...base.arguments import choice, count, instance, number
+from ...base.shows_itself import ShowsItself
 from ...compiler.tick.compile_scene import compile
 from ...device.device import known
 from ...device.hand.hand import Hand
@@ -51,7 +52,7 @@ STIFF = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class WorstMotion:
+class WorstMotion(ShowsItself):
     """A closed motion of the handle, the energy that it draws from a scene, and what was searched to find it.
 
     Attributes
@@ -173,6 +174,8 @@ class WorstMotion:
         counted = sp.Eq(step(n), when(step(n - 1) < last - 0.5, step(n - 1) + 1, 0))
         return Scene(force=F_peak * force, eom=[counted], name=f"forces of the worst motion of {self.scene}")
 
+    hidden = ("program",)
+
     def __str__(self) -> str:
         each = f"{1e6 * self.drawn:.4g} uJ per cycle of {1e3 * self.period:g} ms"
         head = f"{self.scene}, T = {1e3 * self.program.T:g} ms: "
@@ -189,8 +192,6 @@ class WorstMotion:
             f"  motions were found that draw energy from a device of less than b = {self.b_req:.4g} N s/m{has}",
             f"  searched: {self.searched}. A search proves no passivity.",
         ])  # fmt: skip
-
-    __repr__ = __str__
 
     def plot(self) -> Figure:
         """Draw the motion and the energy that it draws, over two cycles."""

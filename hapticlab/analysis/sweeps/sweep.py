@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 
 from ...base.arguments import choice, instance, number
+from ...base.facts import Fact
+from ...base.grid import frame, labelled
 from ...base.guesses import Guessed
+from ...base.shows_itself import ShowsItself
 from ...base.units import in_si
 from ...base.unusual import warn_at_own_line
 from ...compiler.methods.chosen_method import chosen_method
@@ -39,7 +42,7 @@ OPTIONS = ("method", "substeps", "hold", "force_at")
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep(Guessed):
+class Sweep(ShowsItself, Guessed):
     """A metric over a grid.
 
     Attributes
@@ -70,6 +73,42 @@ class Sweep(Guessed):
     def plot(self, *, limits: Limit | Sequence[Limit] | Mapping[str, Limit | Sequence[Limit]] | None = None) -> Figure:
         """Draw lines or a map; see :func:`hapticlab.analysis.records.sweep_plot.plot_sweep`."""
         return plot_sweep(self, limits=limits)
+
+    hidden = ("axes", "units", "unit", "metric")
+
+    def _sentence(self):
+        of = " and ".join(f"{name} ({len(values)} values)" for name, values in self.axes.items())
+        return f"{self.metric} over {of}: {self.values.size} runs of {self.duration:g} s"
+
+    def _facts(self):
+        swept = [Fact(name, values, self.units.get(name, ""), "Swept") for name, values in self.axes.items()]
+        return [*swept, *(f._replace(unit=self.unit) if f.name == "values" else f for f in super()._facts())]
+
+    def _is_open(self, fact):
+        return fact.name in (*self.axes, "values")
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame`` with a line for each run: the swept values and the metric, SI; units in ``attrs["units"]``.
+
+        Raises
+        ------
+        AnalysisError
+            Where pandas, which is optional, is not installed.
+        """
+        points = np.meshgrid(*self.axes.values(), indexing="ij")
+        columns = {name: one.ravel() for name, one in zip(self.axes, points, strict=True)} | {self.metric: self.values.ravel()}
+        return frame(columns, self.units | {self.metric: self.unit}, about=self.about)
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` of the metric over the swept names, SI; each has its unit in ``attrs["units"]``.
+
+        Raises
+        ------
+        AnalysisError
+            Where xarray, which is optional, is not installed.
+        """
+        variables = {self.metric: (tuple(self.axes), self.values)}
+        return labelled(variables, self.axes, self.units | {self.metric: self.unit}, about=self.about)
 
     def __repr__(self) -> str:
         grid = " x ".join(f"{name} ({len(a)})" for name, a in self.axes.items())

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.arguments import count, number
 from ...base.drawing import COLD, WARM, house_style, new_figure, plain_log
+from ...base.shows_itself import ShowsItself, Tabular
 from ...base.telemetry import Telemetry
 from ...device.simulated.closed_loop import link, load_linked
 from ...device.simulated.simulated_paddle import SimulatedPaddle
@@ -28,7 +29,7 @@ APPROACH = 4
 
 
 @dataclass(frozen=True)
-class Bounce:
+class Bounce(ShowsItself):
     """What a law makes of one bounce, over entries at every part of a period.
 
     Attributes
@@ -57,7 +58,7 @@ class Bounce:
 
 
 @dataclass(frozen=True)
-class LawComparison:
+class LawComparison(Tabular):
     """One bounce under every law.
 
     Attributes

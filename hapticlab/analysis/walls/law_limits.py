@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.arguments import number
 from ...base.drawing import COLD, house_style, new_figure, scale_axis
+from ...base.shows_itself import ShowsItself, Tabular
 from ...device.hand.hand import Hand
 from ...errors import AnalysisError, HapticlabError
 from ...rendering.wall_laws import LAWS, RENDERING, Rendering, wall_law
@@ -31,7 +32,7 @@ LONGEST = 32.0
 
 
 @dataclass(frozen=True)
-class LawLimit:
+class LawLimit(ShowsItself):
     """The stiffest wall that stood, and what happened beyond.
 
     Attributes
@@ -55,7 +56,7 @@ class LawLimit:
 
 
 @dataclass(frozen=True)
-class LawLimits:
+class LawLimits(Tabular):
     """The stiffest wall of every law.
 
     Attributes

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
 from ...base.arguments import choice
+from ...base.grid import labelled
+from ...base.shows_itself import ShowsItself
 from ...errors import AnalysisError
 from ...limits.passivity import SWITCHING_NOT_COVERED
 from .wall_map_plot import plot_wall_map
@@ -25,7 +27,7 @@ REGIONS: tuple[Region, ...] = get_args(Region)
 
 
 @dataclass(frozen=True, eq=False)
-class WallMap:
+class WallMap(ShowsItself):
     """A wall over stiffness and one more quantity.
 
     ``passive``: within the passivity limit of this device, so that no passive hand of any kind sets it chattering, and
@@ -107,6 +109,20 @@ class WallMap:
         """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.walls.wall_map_plot.plot_wall_map`."""
         return plot_wall_map(self)
 
+    hidden = ("axes", "regions", "rows", "limits", "units")
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` of regions and amplitude over K and the other quantity, SI; units in ``attrs["units"]``.
+
+        Raises
+        ------
+        AnalysisError
+            Where xarray, which is optional, is not installed.
+        """
+        over = tuple(self.axes)
+        variables = {name: (over, getattr(self, name)) for name in ("regions", "amplitude", "undecided")}
+        return labelled(variables, self.axes, self.units | {"amplitude": "m"}, about=self.about)
+
     def __str__(self) -> str:
         (K, k), (other, a) = self.axes.items()
         known = "passivity" in self.limits
@@ -135,8 +151,6 @@ class WallMap:
         if self.inside_only:
             lines.append("  passivity is that of the spring always acting: switching at the boundary is not in it")
         return "\n".join(lines)
-
-    __repr__ = __str__
 
 
 def under(found, name):

@@ -12,6 +12,8 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ...base.grid import Grid
+from ...base.shows_itself import ShowsItself
 from ...errors import ProgramError
 from ..engines.bytecode import encode, instructions_of, layout, words_of
 from ..engines.skipped_arms import Arm, Demand
@@ -31,7 +33,7 @@ OWN_CHANNELS = 2
 
 
 @dataclass(frozen=True)
-class Cost:
+class Cost(ShowsItself):
     """What a program takes of a board; printing it says so in words.
 
     Attributes
@@ -173,6 +175,8 @@ class Cost:
         """Return a figure: what a step takes of its period, typically and at most."""
         return plot_cost(self)
 
+    hidden = ("board", "step", "traffic")
+
     def __str__(self):
         lines = [
             f"{self.name} on {self.board.name}: {self.instructions} instructions, {self.bytes} bytes and "
@@ -250,6 +254,14 @@ def costs(program, boards, *, every=1, edges_per_second=0.0):
     data = {bits: encode(program, word_bits=bits) for bits in {board.word_bits for board in given}}
     far = far_angles(program) if any(board.hz for board in given) else []
     return [_cost(program, board, data[board.word_bits], far, every, edges_per_second) for board in given]
+
+
+def on_boards(program):
+    """The table of what a program takes on every board whose time is limited."""
+    found = costs(program, [board for board in BOARDS.values() if board.hz])
+    columns = {"board": [one.board.name for one in found], "of the period": [f"{one.share:.0%}" for one in found]}
+    columns["bytes"] = [f"{one.arena} of {one.board.arena}" for one in found]
+    return Grid({**columns, "verdict": [one.verdict for one in found]})
 
 
 def _cost(program, given, data, far, every, edges_per_second):

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ...scene.contact.contact import Contact
 from ...scene.notation.amount import number_of
@@ -54,7 +55,7 @@ class Pairs:
     ranges: dict = field(hash=False)
 
 
-class Contacts(tuple):
+class Contacts(ShowsItself, tuple):
     """Contacts between bodies; a tuple, with what was left out.
 
     Attributes
@@ -93,6 +94,8 @@ class Contacts(tuple):
         A method that locates the touch inside the step has no such limit.
         """
         return {name: number_of(d) / T for name, d in self.thickness.items()}
+
+    hidden = ("thickness", "places", "values")
 
     def __str__(self):
         lines = [f"{len(self)} contacts: {', '.join(c.name for c in self) or 'none'}"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ...base.shows_itself import ShowsItself
 from ...errors import ProgramError, ProgramLimitError
 from ..algebra.polynomial_crossing import FEWER_STEPS, STEPS
 from ..ir.program import Channel
@@ -37,7 +38,7 @@ _LEAST, _MOST = 73, 100
 
 
 @dataclass(frozen=True)
-class Taylor:
+class Taylor(ShowsItself):
     """The motion over a step as a Taylor series, with the instants located at which its equations change.
 
     Where the motion between events is linear, it is the closed form to rounding; elsewhere its error is that of the

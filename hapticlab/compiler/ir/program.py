@@ -6,6 +6,7 @@ A :class:`Block` is a list of instructions with the results it hands out. A :cla
 states. Programs are built by tracing (:mod:`hapticlab.compiler.ir.trace`) and are immutable.
 """
 
+import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,6 +14,9 @@ from numbers import Real
 
 import numpy as np
 
+from ...base.facts import Fact
+from ...base.grid import Grid
+from ...base.shows_itself import ShowsItself
 from ...errors import ProgramError
 from ...scene.frozen import Frozen
 from .operations import OPERATIONS
@@ -59,7 +63,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Program:
+class Program(ShowsItself):
     """What runs at the sample rate.
 
     Attributes
@@ -150,6 +154,33 @@ class Program:
             if names.count(twice) > 1:
                 raise ProgramError(f"{name}: {names.count(twice)} outputs have the name {twice}; give each a name of its own")
 
+    def _sentence(self):
+        method = self.facts.get("method")
+        return f"program {self.name}: {len(self)} instructions a tick, every {1e3 * self.T:g} ms" + (
+            f", by {method}" if method else ""
+        )
+
+    def _facts(self):
+        values = zip(self.parameters, self.values, strict=True)
+        shown = [Fact(c.name, value, c.unit, _stable(*self.limits.get(c.name, ()))) for c, value in values]
+        listed = {name: ", ".join(c.name for c in getattr(self, name)) for name in ("inputs", "states", "outputs")}
+        meanings = ("What it reads at each sample", "What it keeps from tick to tick", "What it gives: the force first")
+        shown += [Fact(name, listed[name], "", words) for name, words in zip(listed, meanings, strict=True)]
+        return shown + [Fact(name, value, "", "") for name, value in self.facts.items() if name != "method"]
+
+    def _tables(self):
+        # opened where a notebook asks: a board's cost is computed of programs, above this module
+        costs = importlib.import_module("hapticlab.compiler.boards.cost")
+        try:
+            yield "on boards", costs.on_boards(self)
+        except ProgramError as problem:
+            yield "on boards", Grid({"": [str(problem)]})
+
+    def _details(self):
+        if self.notes:
+            yield f"Notes ({len(self.notes)})", "\n".join(self.notes)
+        yield "Listing", str(self)
+
     def __str__(self):
         from_leaf = {"param": self.parameters, "input": self.inputs, "state": self.states}
         made = ", ".join(f"{k} = {v}" for k, v in self.facts.items())
@@ -162,6 +193,13 @@ class Program:
         for name, block in (("init", self.init), ("tick", self.tick)):
             lines += [f"{name}:", *_list_block(block, from_leaf, self)]
         return "\n".join(lines + [f"note: {note}" for note in self.notes])
+
+
+def _stable(low=-math.inf, value=math.nan, high=math.inf):
+    """Between what a live parameter keeps the steps of a program stable, in words."""
+    least = f"from {low:.4g} on" if high == math.inf else f"from {low:.4g} "
+    most = "" if high == math.inf else f"up to {high:.4g}"
+    return "" if low == -math.inf and high == math.inf else f"Steps are stable {least if low > -math.inf else ''}{most}"
 
 
 def _verify_block(program, name, block):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...base.shows_itself import ShowsItself
 from ..events.taylor_method import Taylor
 from ..ir.options import choice
 from .method_table import METHODS, Method
@@ -17,7 +18,7 @@ EXACT = "exact"
 
 
 @dataclass(frozen=True)
-class Exact:
+class Exact(ShowsItself):
     """What is linear advanced by its matrix exponential; ``rest`` names the method of what is not.
 
     Its error is rounding, at any stiffness, so that it has no order. A step costs a product with a constant matrix, and the

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ...base.card import card
+from ...base.shows_itself import ShowsItself
 from ..ir.trace import Builder
 from . import stability_region
 from .steps import RK4, adams_bashforth, nystrom, runge_kutta, semi_implicit_euler, verlet
 
 
 @dataclass(frozen=True, repr=False)
-class Method:
+class Method(ShowsItself):
     """A method and what it is known for; printing it says so.
 
     Attributes
@@ -56,7 +57,7 @@ class Method:
     def __reduce__(self):
         return method_named, (self.name,)
 
-    def __repr__(self):
+    def __str__(self) -> str:
         each = "evaluation" if self.evaluations == 1 else "evaluations"
         first = f"; {self.order_with_velocity} where accelerations depend on velocities" if self.order_with_velocity else ""
         step = (

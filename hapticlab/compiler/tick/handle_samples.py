@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 
 from ...base.card import card
+from ...base.shows_itself import ShowsItself
 from ...scene.notation.symbols import t, v, x
 from ..ir.options import choice
 from ..ir.program import Channel
 
 
 @dataclass(frozen=True, repr=False)
-class Hold:
+class Hold(ShowsItself):
     """How an equation of motion sees the handle between two samples; printing it says so.
 
     Attributes
@@ -37,7 +38,7 @@ class Hold:
     def __post_init__(self) -> None:
         object.__setattr__(self, "__doc__", self.says)  # what help and hl.find read
 
-    def __repr__(self) -> str:
+    def __str__(self) -> str:
         facts = {"order": f"{self.order_of_x} of x(t), {self.order_of_v} of v(t)", "cost": self.cost, "source": self.source}
         return card(f"{self.name}: {self.says}", {**facts, "not to be confused with": self.confused_with})
 

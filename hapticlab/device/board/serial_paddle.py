@@ -356,7 +356,7 @@ class SerialPaddle(Paddle):
         self.close()
 
     def __repr__(self) -> str:
-        return "\n".join([f"<SerialPaddle {self.url}: {self}>", *self.notices])
+        return f"<SerialPaddle {self.url}: {'; '.join([str(self), *self.notices])}>"
 
     def __str__(self) -> str:
         return introduction(self.board, self.settings, self.T)

@@ -4,6 +4,8 @@ import math
 import zlib
 from dataclasses import dataclass, fields, replace
 
+from ...base.facts import Fact
+from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from ..device import Device
 from ..link.messages import (
@@ -27,7 +29,7 @@ _CHOICES = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings:
+class Settings(ShowsItself):
     """The record a board keeps; units and meanings are in messages.SETTINGS, and ``print`` shows them.
 
     Examples
@@ -110,6 +112,13 @@ class Settings:
         """Return the force [N] at the handle of a duty in -1 ... 1, the motor's law undone."""
         part = abs(duty) if self.motor_law == MOTOR_LAWS["LINEAR"] else duty * duty
         return math.copysign(part * self.force_full, duty) * self.motor_sign
+
+    def _sentence(self):
+        found = "nominal constants, nothing measured on this paddle" if self.is_nominal else f"calibrated on {self.date}"
+        return f"what a board keeps of paddle {self.ident:04X}: {found}"
+
+    def _facts(self):
+        return [Fact(name, getattr(self, name), unit, meaning) for _, name, unit, meaning in SETTINGS[1:-1]]
 
     def __str__(self):
         rows = {name: (unit, meaning) for _, name, unit, meaning in SETTINGS}

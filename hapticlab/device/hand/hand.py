@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
+from ...base.shows_itself import ShowsItself
 from ...base.unusual import HAND, warn_of_unusual
 from ...errors import PaddleError
 from .hand_presets import PRESETS, HandPreset
@@ -27,7 +28,7 @@ _REASONS = {
 
 
 @dataclass(frozen=True, kw_only=True, init=False)
-class Hand:
+class Hand(ShowsItself):
     """A hand lumped on the handle: (m + m_hand) x'' = push - b_hand (x' - intent') - k_hand (x - intent) - ...
 
     A linear hand that does not react: it holds for some 30 ms after contact, before reflexes. Passive with push = 0 and
@@ -144,6 +145,12 @@ class Hand:
             when = float(np.broadcast_to(times, bad.shape)[bad][0]) if bad.ndim else 0.0
             raise PaddleError(f"intent is not finite at t = {when:g} s; needs a position [m] at every tick.")
         return np.broadcast_to(places, times.shape)
+
+    def _sentence(self):
+        return f"a hand: {self}"
+
+    def _line(self):
+        return f"Hand({self})"
 
     def __str__(self) -> str:
         parts = [f"{name} = {getattr(self, name):g} {unit}" for name, unit in UNITS.items() if getattr(self, name)]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
+from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Together(Intent):
 
 
 @dataclass(frozen=True, kw_only=True)
-class MinimumJerk(Intent):
+class MinimumJerk(ShowsItself, Intent):
     """The smooth reach of a hand, which has the least mean square jerk: x = start + (end - start)(10 s^3 - 15 s^4 + 6 s^5).
 
     Flash and Hogan (1985): s runs from 0 to 1 over the duration. The fastest point is half way, at 1.875 times the mean
@@ -96,7 +97,7 @@ class MinimumJerk(Intent):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tremor(Intent):
+class Tremor(ShowsItself, Intent):
     """Physiological tremor: a narrow band of noise, drawn once, as so many sinusoids of random phase.
 
     The hand's tremor has its peak between 6 and 12 Hz (Lakie et al., J. Physiol. 593, 2015); the amplitude is yours to

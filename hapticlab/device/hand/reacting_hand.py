@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
+from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from .intents import Intent, Together
 
@@ -45,7 +46,7 @@ class Seen:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reacting(Intent):
+class Reacting(ShowsItself, Intent):
     """An intent that answers what happened, a reaction time ago: the feedback path of Section 23.3.3.
 
     Every so often the plan is asked where to be by the next time; the hand moves there in a straight line. What the plan

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arguments import numbers
+from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from .intents import MinimumJerk
 
@@ -19,7 +20,7 @@ DURATIONS = (0.01, 600.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rehearsal:
+class Rehearsal(ShowsItself):
     """What the hand does for ``view.rehearsal``, where nobody recorded.
 
     Parameters

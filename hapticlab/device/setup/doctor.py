@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
+from ...base.shows_itself import ShowsItself
 from ...errors import HapticlabError
 from ..board.serial_paddle import SerialPaddle
 from ..link.port_faults import permission_cure
@@ -21,7 +22,7 @@ STATES = ("ok", "attention", "fault", "skipped")
 
 
 @dataclass(frozen=True)
-class Report:
+class Report(ShowsItself):
     """Every step's Check, in order; prints as lines."""
 
     checks: tuple
@@ -39,11 +40,11 @@ class Report:
         """Return the checks as dictionaries."""
         return [asdict(check) for check in self.checks]
 
-    def __str__(self):
-        counted = ", ".join(f"{count} {s}" for s in STATES if (count := sum(c.state == s for c in self.checks)))
-        return "\n".join([*map(str, self.checks), counted])
+    def _sentence(self):
+        return ", ".join(f"{count} {s}" for s in STATES if (count := sum(c.state == s for c in self.checks)))
 
-    __repr__ = __str__  # what a notebook shows
+    def __str__(self):
+        return "\n".join([*map(str, self.checks), self._sentence()])
 
 
 def doctor(url: str | None = None, person: Person | None = None, *, tell: Callable[[Any], Any] = lambda check: None) -> Report:

@@ -287,6 +287,9 @@ class SimulatedPaddle(Paddle):
             fault=fault, saturated=limited,
         )  # fmt: skip
 
+    def _line(self):
+        return f"SimulatedPaddle({self._sentence().removeprefix('simulated paddle: ')})"
+
     def __str__(self) -> str:
         whole, fraction = delay_parts(self)
         samples = f"{whole} whole sample{'s' * (whole != 1)}" + (f" + {fraction:g}" if fraction else "")

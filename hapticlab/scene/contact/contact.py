@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...base.units import si_name
 from ...errors import SceneError, SignalError
 from ..notation.amount import number_of
@@ -36,7 +37,7 @@ class _InASum:
 
 
 @dataclass(frozen=True)
-class Contact(_InASum):
+class Contact(ShowsItself, _InASum):
     """Two bodies, or a body and the handle, that cannot pass each other.
 
     Parameters
@@ -180,7 +181,7 @@ class Contact(_InASum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class friction(_InASum):
+class friction(ShowsItself, _InASum):
     """Coulomb friction between two surfaces that slip on each other.
 
     Sliding: ``coulomb`` against the slip. Sticking: whatever keeps the slip at zero, up to ``breakaway``. Sticking is a

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...base.units import in_si
 from ...errors import SceneError
 from ..notation.amount import amount
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class FeltImpulse:
+class FeltImpulse(ShowsItself):
     """A force for a scene, the difference equations it needs, and what is worth watching.
 
     Attributes
@@ -37,6 +38,9 @@ class FeltImpulse:
     force: sp.Expr
     equations: tuple
     watch: dict
+
+    def __str__(self) -> str:
+        return f"the force of a felt impulse, with {len(self.equations)} difference equations"
 
 
 def felt_impulse(contact: Contact, *, tau: Term, F_max: Term | None = None) -> FeltImpulse:

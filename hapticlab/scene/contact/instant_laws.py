@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import sympy as sp
 
 from ...base.arguments import choice
+from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.checks import agree_with
@@ -21,7 +22,7 @@ ORDERS = ("sequential", "simultaneous")
 
 
 @dataclass(frozen=True, kw_only=True)
-class impulse(ContactLaw):
+class impulse(ShowsItself, ContactLaw):
     """Impact with restitution: in the instant of touch, u+ = -e u- for the rates u of the gap (Newton).
 
     For one frictionless contact Newton's law and Poisson's (release impulse = e times compression impulse) agree. For
@@ -88,7 +89,7 @@ class impulse(ContactLaw):
 
 
 @dataclass(frozen=True, kw_only=True)
-class micro_impulse(ContactLaw):
+class micro_impulse(ShowsItself, ContactLaw):
     """Repeated impulses at the end of each step, for lasting contact too.
 
     Mirtich and Canny, *Impulse-based simulation of rigid bodies*, Symp. Interactive 3D Graphics (1995) 181-188: no
@@ -132,7 +133,7 @@ class micro_impulse(ContactLaw):
 
 
 @dataclass(frozen=True, kw_only=True)
-class rigid(ContactLaw):
+class rigid(ShowsItself, ContactLaw):
     """Rigid contact without rebound: the reaction keeps the gap closed while it pushes, and lets go when it would pull.
 
     The reactions solve the linear complementarity problem 0 <= N, 0 <= d2gap/dt2, N d2gap/dt2 = 0 (Baraff, *Fast contact

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.checks import agree_with
 from ..notation.units import fixed
@@ -19,7 +20,7 @@ HERTZ = sp.Rational(3, 2)
 
 
 @dataclass(frozen=True, kw_only=True)
-class penalty(ContactLaw):
+class penalty(ShowsItself, ContactLaw):
     """Penalty contact: a spring and a damper act on the penetration, and never pull.
 
     N = max(0, k d - b dgap/dt) where the gap is closed, with the penetration d = -gap. With b > 0 the force jumps at
@@ -74,7 +75,7 @@ class penalty(ContactLaw):
 
 
 @dataclass(frozen=True, kw_only=True)
-class hunt_crossley(ContactLaw):
+class hunt_crossley(ShowsItself, ContactLaw):
     """Hunt-Crossley contact: N = k d^n (1 + c dd/dt), never pulling, with the penetration d = -gap.
 
     Hunt and Crossley, *Coefficient of restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42 (1975)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ...base.arguments import count, instance
+from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.parameters import T
@@ -30,7 +31,7 @@ LONGEST_PULSE = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entry:
+class Entry(ShowsItself):
     """Where the handle enters, and the speed that it is taken to come in with.
 
     Parameters

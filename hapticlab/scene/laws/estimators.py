@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from ...base.card import card
+from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import amount, number_of
 from ..notation.parameters import T
@@ -36,7 +37,7 @@ AN_ESTIMATE = "an estimate, as in velocity=hl.velocity.filtered(tau='4 ms')"
 
 
 @dataclass(frozen=True)
-class VelocityEstimate:
+class VelocityEstimate(ShowsItself):
     """An estimate of the handle's velocity, for :func:`~hapticlab.scene.laws.chapter_laws.wall` or any scene.
 
     Attributes

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ...base.arguments import choice
+from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.symbols import T, delay, n, parameters, signal, v, when, x
 from ..notation.written import expression
@@ -79,7 +80,7 @@ def passivity_observer(scene: Scene, *, lag: int = 0) -> Scene:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Credit:
+class Credit(ShowsItself):
     """What counts as the credit of an environment that a passivity controller keeps, and what is struck off.
 
     Parameters

@@ -9,9 +9,10 @@ from __future__ import annotations
 from typing import Literal
 
 from ...base.card import card
+from ...base.shows_itself import ShowsItself
 
 
-class SpringLaw(str):
+class SpringLaw(ShowsItself, str):
     """A spring law: the text of its name, which ``law=`` takes, and what is known of it; printing it says that.
 
     Attributes
@@ -65,8 +66,6 @@ class SpringLaw(str):
             "source": "R. B. Gillespie, Haptic Interface to Virtual Environments, ch. 23",
         }
         return card(f"{self:s}: {self.says}", {**facts, "not to be confused with": self.confused_with})
-
-    __repr__ = __str__
 
     def _sum(self):
         terms = [(tap, f"x[n-{lag}]" if lag else "x[n]") for lag, tap in enumerate(self.taps)]

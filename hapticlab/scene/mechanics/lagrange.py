@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from ...base.arguments import choice
+from ...base.shows_itself import Typeset
 from ...errors import MassError, SceneError
 from ..contact.contact import Contact, friction
 from ..notation.checks import agree_with, applied
 from ..notation.derivative import Partial, Rate
 from ..notation.symbols import t
+from ..notation.typeset import typeset
 from ..notation.units import agree, unit_of
 from ..notation.written import expression, zero_of
 
@@ -21,11 +23,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
+#: equations of more coordinates take long to work out, and their Lagrangian is read more easily
+MOST_WORKED_OUT = 3
 ENFORCE = ("auto", "embed", "kkt", "baumgarte", "numeric")
 
 
 @dataclass(frozen=True)
-class Mechanics:
+class Mechanics(Typeset):
     """Equations of motion ``M a = f`` of some coordinates, their constraints and contacts; one entry of a scene's ``eom``.
 
     Made by :func:`lagrange` or :func:`~hapticlab.scene.mechanics.sympy_models.from_mechanics`.
@@ -118,9 +122,17 @@ class Mechanics:
         contacts = [f"{c.name}: {getattr(c, 'gap', None) if isinstance(c, Contact) else c.slip}" for c in self.contacts]
         return "\n  ".join([head, *(f"0 = {g}" for g in self.constraints), *contacts])
 
-    def _repr_latex_(self):
-        rows = [sp.latex(e) for e in self.equations] + [f"0 = {sp.latex(g)}" for g in self.constraints]
-        return "$\\displaystyle \\begin{array}{l}" + r" \\ ".join(rows) + "\\end{array}$"
+    def _sentence(self):
+        kept = f" under {len(self.constraints)} constraints" if self.constraints else ""
+        return f"equations of motion of {', '.join(type(q).__name__ for q in self.coordinates)}{kept}"
+
+    def _facts(self):
+        return []
+
+    def _equations(self):
+        if len(self.coordinates) > MOST_WORKED_OUT and self.lagrangian is not None:
+            return [f"L = {typeset(self.lagrangian)}"]
+        return [*map(typeset, self.equations), *(f"0 = {typeset(g)}" for g in self.constraints)]
 
 
 def lagrange(

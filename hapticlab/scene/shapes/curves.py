@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import number_of
 from ..notation.cases import when
@@ -37,7 +38,7 @@ GRID = 128
 ON_MINIMUM = 1e-6
 
 
-class Curve(Shape):
+class Curve(ShowsItself, Shape):
     """Smooth closed curve around a body, counter-clockwise; a shape that :func:`track` takes, and no other gap.
 
     Parameters

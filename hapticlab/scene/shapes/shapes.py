@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from ...base.shows_itself import ShowsItself
 from ...base.units import in_si
 from ...errors import SceneError
 from ..notation.amount import amount, take_lengths
@@ -72,7 +73,7 @@ class Shape:
 
 
 @dataclass(frozen=True)
-class Circle(Shape):
+class Circle(ShowsItself, Shape):
     """Disc around its origin.
 
     Parameters
@@ -94,7 +95,7 @@ class Circle(Shape):
 
 
 @dataclass(frozen=True)
-class Box(Shape):
+class Box(ShowsItself, Shape):
     """Rectangle around its origin, ``width`` along x and ``height`` along y, each > 0 [m].
 
     Examples
@@ -121,7 +122,7 @@ class Box(Shape):
 
 
 @dataclass(frozen=True)
-class Capsule(Shape):
+class Capsule(ShowsItself, Shape):
     """Bar with round ends around its origin: a segment of ``length`` along x, widened by ``radius``; both > 0 [m].
 
     Examples
@@ -144,7 +145,7 @@ class Capsule(Shape):
 
 
 @dataclass(frozen=True)
-class Segment(Shape):
+class Segment(ShowsItself, Shape):
     """Straight line of ``length`` [m] > 0 along x around its origin, without a thickness.
 
     Touched by a :class:`Circle` it has no inside: the distance is never negative. A body that passes it between two
@@ -166,7 +167,7 @@ class Segment(Shape):
 
 
 @dataclass(frozen=True)
-class Polygon(Shape):
+class Polygon(ShowsItself, Shape):
     """Simple polygon; where it is not convex it is split into convex parts, once, when it is made.
 
     Parameters
@@ -213,7 +214,7 @@ class Polygon(Shape):
 
 
 @dataclass(frozen=True)
-class HalfPlane(Shape):
+class HalfPlane(ShowsItself, Shape):
     """Everything below its own x axis: a floor; turned by pi/2, a wall that is solid to the right of its origin.
 
     Examples
@@ -243,7 +244,7 @@ def ground(y: Term = 0, *, name: str = "ground") -> Placed:
 
 
 @dataclass(frozen=True, repr=False)
-class Placed:
+class Placed(ShowsItself):
     """A shape in its place: its origin at (x, y) [m], turned by ``angle`` [rad], each an expression."""
 
     shape: Shape

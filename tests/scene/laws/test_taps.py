@@ -23,7 +23,8 @@ def test_a_record_is_its_name_and_says_what_it_is(law):
     assert hl.stability_limit(DEVICE, law=law).K == hl.stability_limit(DEVICE, law=name).K
     assert hl.passivity_limit(DEVICE, law=law).K == hl.passivity_limit(DEVICE, law=name).K
     for fact in ("Eq. (23.", "  force ", "  order ", "  cost ", "  source ", "  not to be confused with "):
-        assert fact in str(law) == repr(law)
+        assert fact in str(law)
+    assert repr(law).startswith(f"SpringLaw({name}: ") and "\n" not in repr(law)
     assert name in inspect.getdoc(law)
 
 

@@ -242,5 +242,5 @@ def test_a_model_of_kane_is_shown_as_equations():
     (equation,) = mech.equations
     mass, stiffness, z = mech[m], mech[k], mech[q]
     assert equation == sp.Eq(mass * z.diff(t, 2), -stiffness * z)
-    assert r"\frac{d^{2}}{d t^{2}} q" in mech._repr_latex_()
+    assert r"m \ddot{q} = - k q" in mech._repr_latex_()
     assert str(mech) == "M a = f of 1 coordinates"

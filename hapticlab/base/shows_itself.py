@@ -1,0 +1,210 @@
+"""How everything that a public call returns shows itself: a sentence, a small table with units, the figure, details folded.
+
+A class says what it is by ``__str__``, whose first line is its sentence, by the units of its documented attributes, and by
+``plot`` where a figure is due. From these come one line for ``repr``, and HTML for a notebook: without scripts, names and
+style sheets, in the colours of the page.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from html import escape
+from typing import Any, ClassVar
+
+from ..errors import HapticlabError
+from .facts import Fact, are_records, facts, in_words
+from .grid import Grid
+
+#: facts and rows that are shown before the rest is folded, or left to print and to_pandas
+OPEN, ROWS = 8, 20
+_LINE = "var(--jp-border-color2, rgba(128, 128, 128, 0.4))"
+_ROW = f"border-bottom: 1px solid {_LINE}"
+_CELL = "text-align: left; padding: 0.15em 1em 0.15em 0; border: 0"
+_TABLE = "margin: 0.3em 0; border-collapse: collapse; color: inherit"
+_QUIET = "color: var(--jp-ui-font-color2, inherit)"
+
+
+class ShowsItself:
+    """What a notebook shows of an object, and its ``repr`` in one line; ``hidden`` are facts that say nothing there.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass
+    ... class Spring(ShowsItself):
+    ...     '''A spring.
+    ...
+    ...     Attributes
+    ...     ----------
+    ...     K : float
+    ...         Stiffness [N/m].
+    ...     '''
+    ...     K: float
+    ...     def __str__(self):
+    ...         return f"a spring of {self.K:g} N/m"
+    >>> Spring(200)
+    Spring(a spring of 200 N/m)
+    >>> "<td" in Spring(200)._repr_html_()
+    True
+    """
+
+    hidden: ClassVar[tuple[str, ...]] = ()
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Give one line to ``repr`` where a class says itself by ``__str__``: a dataclass keeps a method that is there."""
+        super().__init_subclass__(**options)
+        if "__repr__" not in cls.__dict__ and cls.__str__ is not object.__str__:
+            cls.__repr__ = _in_one_line  # type: ignore[method-assign]
+
+    def _sentence(self) -> str:
+        """What it says first: the first line of its text, or of what its class says of itself."""
+        told = type(self).__str__ is object.__str__ and inspect.getdoc(type(self))
+        return " ".join((told or str(self)).split("\n")[0].split()).rstrip(":")
+
+    def _tables(self) -> Iterator[tuple[str, Grid]]:
+        """Tables to show, each below its name: by default of every attribute that has records in it."""
+        for fact in self._facts():
+            if are_records(fact.value):
+                yield fact.name, Grid.of(fact.value)
+
+    def _details(self) -> Iterator[tuple[str, str]]:
+        """What is folded, each text below its title: by default all words, where they are more than the sentence."""
+        if "\n" in str(self):
+            yield "In words", str(self)
+
+    def _figure(self) -> Any:
+        """The figure, or None: by default what ``plot`` draws; it is drawn only where a notebook asks."""
+        return self.plot() if hasattr(self, "plot") else None
+
+    def _facts(self) -> list[Fact]:
+        return [fact for fact in facts(self) if fact.name not in self.hidden]
+
+    def _line(self) -> str:
+        return f"{type(self).__name__}({self._sentence()})"
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """All words where it stands alone in a cell, its one line inside a list or a dict."""
+        lines = [repr(self)] if cycle or len(printer.stack) > 1 else str(self).split("\n")
+        for number, line in enumerate(lines):
+            if number:
+                printer.break_()
+            printer.text(line)
+
+    def _repr_html_(self) -> str:
+        return f'<div style="overflow-x: auto">{self._head_html()}{self._body_html()}</div>'
+
+    def _head_html(self):
+        return f"<p><strong>{escape(_upper(self._sentence()))}</strong></p>"
+
+    def _is_open(self, fact):
+        """Whether a fact stands in the table: numbers do, texts and arrays are folded."""
+        return isinstance(fact.value, (bool, int, float))
+
+    def _rows(self):
+        """The rows of the table of facts, and those that are folded: also what is beyond the first few."""
+        shown, folded = [], []
+        for fact in self._facts():
+            text, unit = in_words(fact.value, fact.unit)
+            if text and not are_records(fact.value):
+                target = shown if self._is_open(fact) and len(shown) < OPEN else folded
+                target.append((fact.name, text, unit, fact.meaning))
+        return shown, folded
+
+    def _body_html(self):
+        rows, folded = self._rows()
+        told = [_fact_table(rows)]
+        told += [f"{_caption(name)}{grid_html(grid)}" for name, grid in self._tables() if len(grid)]
+        told += [_drawn(self._figure), _folded("More facts", _fact_table(folded))]
+        told += [_folded(title, f"<pre>{escape(text)}</pre>") for title, text in self._details()]
+        return "".join(told)
+
+
+def _in_one_line(self: ShowsItself) -> str:
+    return self._line()
+
+
+class Tabular(ShowsItself):
+    """What is first of all a table, which pandas can take over."""
+
+    def to_pandas(self) -> Any:
+        """The table as a ``pandas.DataFrame`` in SI units, which its ``attrs["units"]`` names; pandas is optional.
+
+        Raises
+        ------
+        AnalysisError
+            Where pandas is not installed.
+        """
+        return next(iter(self._tables()))[1].to_pandas()
+
+
+class Typeset(ShowsItself):
+    """What is first of all equations, shown as Markdown: every front end typesets LaTeX there, few do within HTML."""
+
+    _repr_html_ = None  # type: ignore[assignment]
+
+    def _equations(self) -> list[str]:
+        """The lines, in LaTeX."""
+        raise NotImplementedError
+
+    def _repr_latex_(self) -> str:
+        return "$\\displaystyle " + _aligned(self._equations()) + "$"
+
+    def _repr_markdown_(self) -> str:
+        body = self._body_html().replace("\n\n", "\n&nbsp;\n")  # a blank line would end the HTML
+        return f"{self._head_html()}\n\n$$\n{_aligned(self._equations())}\n$$\n\n<div>{body}</div>\n"
+
+
+def _aligned(lines):
+    return "\\begin{array}{l}\n" + " \\\\\n".join(lines) + "\n\\end{array}"
+
+
+def _upper(sentence):
+    """The sentence with a capital where it begins with a word, not with a symbol or a name of the code."""
+    first = sentence.split(" ")[0].rstrip(",:;")
+    return sentence[:1].upper() + sentence[1:] if first.isalpha() and first.islower() and len(first) > 2 else sentence
+
+
+def _fact_table(rows):
+    if not rows:
+        return ""
+    lines = (  # a long text keeps its own lines
+        f'<tr style="{_ROW}"><td style="{_CELL}"><code>{escape(name)}</code></td><td style="{_CELL}; white-space: pre-line">'
+        f"{escape(text)} {escape(unit)}</td>"
+        f'<td style="{_CELL}; {_QUIET}">{escape(meaning)}</td></tr>'
+        for name, text, unit, meaning in rows
+    )
+    return f'<table style="{_TABLE}"><tbody>{"".join(lines)}</tbody></table>'
+
+
+def grid_html(grid: Grid) -> str:
+    """A table with a head that carries the units, cut to its first rows with a sentence on the rest."""
+    heads = "".join(f'<th scope="col" style="{_CELL}">{escape(head)}</th>' for head in grid.heads)
+    lines = "".join(f'<tr style="{_ROW}">{"".join(map(_cell, row))}</tr>' for row in grid.rows(ROWS))
+    table = f"<thead><tr>{heads}</tr></thead><tbody>{lines}</tbody>"
+    more = f"<p>The first {ROWS} of {len(grid)} rows; {escape(grid.all)}</p>" if len(grid) > ROWS else ""
+    return f'<table style="{_TABLE}">{table}</table>{more}'
+
+
+def _cell(text):
+    return f'<td style="{_CELL}">{escape(text)}</td>'
+
+
+def _caption(name):
+    return f'<p style="margin: 0.4em 0 0">{escape(name.replace("_", " "))}</p>' if name else ""
+
+
+def _drawn(figure):
+    """The figure as an image with its alternative text; a sentence where there is nothing to draw."""
+    try:
+        drawn = figure()
+    except HapticlabError as nothing:
+        return f'<p style="{_QUIET}">No figure: {escape(str(nothing))}</p>'
+    if drawn is None:
+        return ""
+    data, _ = drawn._repr_mimebundle_()
+    return data["text/html"]
+
+
+def _folded(title, inside):
+    return f"<details><summary>{escape(title)}</summary>{inside}</details>" if inside else ""
