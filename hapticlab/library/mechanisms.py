@@ -52,7 +52,7 @@ def draw_gears(axes, *, x=0.012, phi=0.4, r=0.02, N_1=60.0, N_2=20.0, **_):
     """Draw the rack under the pinion, the gears at their ratio, the flywheel on the second shaft."""
     big = max(1.3 * r, 0.028 * min(1, N_1 / N_2))
     small = big * N_2 / N_1
-    s = Sketch(axes, -0.105, 0.22, -0.031, 0.053)
+    s = Sketch(axes, -0.08, 0.2, -0.031, 0.053)
     u, z = s.u, r * phi
     rack = z + 0.04 + clearance(x, z)
     centre = np.array([max(0.095 + clearance(x, z), rack + big + 2 * u), r])
@@ -108,7 +108,7 @@ def slider_crank() -> Scene:
 
 def draw_slider_crank(axes, *, x=0.012, theta=0.9, r=0.03, l=0.09, **_):
     """Draw the crank on the right, the slider between it and the handle."""
-    s = Sketch(axes, -0.085, 0.235, -0.043, 0.041)
+    s = Sketch(axes, -0.08, 0.232, -0.043, 0.041)
     u, slider = s.u, l + r * np.cos(theta) - np.sqrt(l**2 - (r * np.sin(theta)) ** 2)
     origin = 0.065 + clearance(x, slider)
     place, centre = np.array([slider + origin, 0.0]), np.array([origin + l, 0.0])
@@ -173,7 +173,7 @@ def four_bar() -> Scene:
 
 def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, rho=0.03, theta_0=1.2, **_):
     """Draw the rack under the crank's pulley, the linkage on it."""
-    s = Sketch(axes, -0.175, 0.29, -0.044, 0.077)
+    s = Sketch(axes, -0.09, 0.225, -0.044, 0.077)
     u, z = s.u, rho * (theta - theta_0)
     rack = z + 0.04 + clearance(x, z)
     ground = np.array([max(0.085 + clearance(x, z), rack + rho + 2 * u), rho])
@@ -191,7 +191,7 @@ def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, r
     s.line((rack, 0), (max(rack + 0.09, ground[0] + rho), 0), width=3.0)
     s.disc(ground, rho, theta - np.pi / 2 - theta_0, color="#f4f4f4")
     s.line(ground, rocker, width=0.8, color=SOFT, linestyle="--", zorder=3.5)
-    s.text((ground + rocker) / 2, "$d$", right=2.3, up=-2.4)
+    s.text((ground + rocker) / 2, "$d$", right=-1.5, up=-1.8)
     s.rod(ground, crank, width=3.5)
     s.text((ground + crank) / 2 + 2.6 * u * beside[0], "$a$")
     s.rod(crank, joint)
@@ -203,7 +203,7 @@ def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, r
         s.pin(at)
     s.text(ground + rho * np.array([-0.8, 0.6]), r"$\rho,\ J_2$", right=-4.5, up=2)
     s.text(rocker, "$J_4$", right=6, up=-2.5)
-    s.angle(ground, 6, 0, theta, r"$\theta$")
+    s.angle(ground, 2.8, 0, theta, r"$\theta$")
     s.angle(crank, 9, 0, beta, r"$\beta$")
     s.line(crank, crank + [11 * u, 0], width=0.8, color=SOFT, linestyle="--")
     s.angle(rocker, 4, 0, psi, r"$\psi$")
@@ -246,7 +246,7 @@ def rolling() -> Scene:
 
 def draw_rolling(axes, *, x=0.012, z=0.008, u=0.012, r=0.015, alpha=0.0, **_):
     """Draw the plate on rollers beside the handle, the disc on it, all along the slope."""
-    s, origin = Sketch(axes, -0.085, 0.195, -0.028, 0.0445, tilt=alpha), 0.09 + clearance(x, z)
+    s, origin = Sketch(axes, -0.075, 0.195, -0.028, 0.0445, tilt=alpha), 0.09 + clearance(x, z)
     plate = np.array([z + origin, 0.0])
     top = 2.5 * s.u
     centre = plate + [u, top + r]

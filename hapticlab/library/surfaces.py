@@ -176,7 +176,7 @@ def buckling_beam() -> Scene:
 
 def draw_buckling_beam(axes, *, x=0.024, P=1.5, k=90.0, k_3=5e4, **_):
     """Draw the beam upright between its loads, its middle at the handle, and the other state dashed."""
-    s = Sketch(axes, -0.165, 0.165, -0.04, 0.046)
+    s = Sketch(axes, -0.09, 0.09, -0.04, 0.046)
     u, half = s.u, 0.027
     along = np.linspace(-half, half, 25)
     shape = np.cos(0.5 * np.pi * along / half)

@@ -66,9 +66,8 @@ class Layout:
         if self.upright:
             spare = (HIGH * u - (end - start)) / 2
             return Sketch(axes, -0.4 * NARROW * u, 0.6 * NARROW * u, start - spare, end + spare, tilt=0.5 * 3.141592653589793)
-        spare = (WIDE * u - (end - start)) / 2
         top = {None: 0.5 * HIGH, True: 8.0, False: HIGH - 9.5}[self.hangs] * u
-        return Sketch(axes, start - spare, end + spare, top - HIGH * u, top)
+        return Sketch(axes, start, end, top - HIGH * u, top)
 
     def origins(self, state, u):
         """Where each coordinate's zero is drawn [m]: farther on where a body would be run into."""
@@ -123,7 +122,8 @@ def lay_out(bodies, *, upright, hangs, tied, meets, held, balls, start, dials):
     reach = UPRIGHT if upright else REACH
     flight = max([start.get(name, 0.0) for name in bodies if name in meets], default=0.0)
     fixed, metres = place
-    fixed += (7.0 if bodies and bodies[-1] in held else 0.0) + (0.8 if upright else 5.0) + DIAL * dials
+    fixed += (7.0 if bodies and bodies[-1] in held else 0.0) + (0.8 if upright else 5.0)
+    fixed += DIAL * dials + (0.0 if hangs is None else 6.0)
     return Layout(upright, hangs, half, rest, before, stiff, (fixed, metres + max(reach, 1.1 * flight)), dials)
 
 

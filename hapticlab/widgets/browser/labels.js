@@ -1,7 +1,7 @@
 // Labels of a moving picture: typeset letters, each where nothing else is.
 
 const AROUND = [0, 45, -45, 90, -90, 135, -135, 180].map((degrees) => (degrees * Math.PI) / 180)
-const FARTHER = [1, 1.6, 2.4, 3.4, 4.6]
+const FARTHER = [1, 1.6, 2.4, 3.4, 4.6, 6.5]
 const NEAR = 16 // [px] from what is named, where its name finds no room on it
 const SPARE = 2 // [px] between a label and anything else
 const GREEK = {
