@@ -5,8 +5,10 @@ import math
 
 import numpy as np
 
+from ..analysis.pictures.painting import paint
 from ..analysis.pictures.pictures import drawing_of, named_by
 from ..analysis.pictures.schematic import Schematic
+from ..base.drawing import house_style, new_figure, png
 from ..errors import AnalysisError
 from ..library.display_list import DisplayList
 from ..library.entries import CATALOGUE
@@ -95,6 +97,26 @@ class MovingPicture:
         hand = self._hand(values, items)
         (left, right), (bottom, top) = drawn.get_xlim(), drawn.get_ylim()
         return (*items, *hand, ("frame", [(left, bottom), (right, top)], {}))
+
+    def still(self, values):
+        """Return one moment as a picture where nothing moves: the bytes of a PNG, and the words for who cannot see it.
+
+        Parameters
+        ----------
+        values : dict of str to float
+            As for :meth:`draw`.
+        """
+        F = values.get("F", math.nan)
+        with house_style():
+            figure = new_figure(height=3.0)
+            paint(figure, self.draw(values), self.box, F, title=self.scene.name)
+        named = [f"x = {1e3 * values['x']:.3g} mm"]
+        for name, q in self.channels.items():
+            if name in values:
+                length = type(q).unit == "m"
+                named.append(f"{name} = {values[name] * (1e3 if length else 1):.3g} {'mm' if length else type(q).unit}")
+        force = f" The motor applies {abs(F):.2g} N." if math.isfinite(F) else ""
+        return png(figure), f"{self.scene.name}: a drawing of the scene with {', '.join(named)}.{force}"
 
     def _told(self, item):
         kind, points, style = item

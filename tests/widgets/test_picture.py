@@ -129,6 +129,12 @@ def test_a_picture_of_ones_own():
         moving_picture(scene, picture="detent")
 
 
+def test_a_still_picture_has_words():
+    data, words = moving_picture(hl.library.mass_spring_damper()).still({"x": 0.012, "z": 0.01, "F": 1.5, "intent": 0.02})
+    assert data.startswith(b"\x89PNG")
+    assert words == "mass-spring-damper: a drawing of the scene with x = 12 mm, z = 10 mm. The motor applies 1.5 N."
+
+
 def test_a_display_list_takes_what_is_drawn_on_axes_and_what_comes_later_covers_what_came_before():
     drawn = DisplayList()
     drawn.fill([0, 1, 1], [0, 0, 1], facecolor="#ffffff", edgecolor="none", zorder=6)

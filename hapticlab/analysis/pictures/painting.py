@@ -6,7 +6,8 @@ import numpy as np
 
 from ...library.parts import primitives
 
-INCHES = 7.2
+#: of a figure at most [inches]
+WIDE, HIGH = 7.2, 3.0
 LETTERS = {"fontsize": 11, "ha": "center", "va": "center", "zorder": 9, "clip_on": False}
 #: directions about what is named, from where its label belongs [degrees]; farther ones where all are taken
 AROUND, FARTHER = (0, 45, -45, 90, -90, 135, -135, 180), (1.0, 1.6, 2.4, 3.4)
@@ -14,24 +15,26 @@ AROUND, FARTHER = (0, 45, -45, 90, -90, 135, -135, 180), (1.0, 1.6, 2.4, 3.4)
 NEAR = 20.0
 
 
-def paint(figure, drawn, F=math.nan, title=""):
-    """Draw a display list on a new pair of axes, and fit the figure to it.
+def paint(figure, items, box, F=math.nan, title=""):
+    """Draw items on a new pair of axes, and fit the figure to them.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-    drawn : DisplayList
+    items : sequence of items, as hapticlab.library.display_list lists them
+    box : (left, right, bottom, top)
+        What is shown [m]; more where something reaches farther.
     F : float
         Force on the environment [N], for the colours and the motor's arrow.
     title : str
     """
     axes = figure.subplots()
     axes.axis("off")
-    items = primitives(drawn.items, F)
-    (left, right), (bottom, top) = _limits(drawn)
+    (left, right), (bottom, top) = _limits(items, *box)
+    items = primitives(items, F)
     axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     axes.set_title(title, fontsize="small")
-    figure.set_size_inches(INCHES, INCHES * (top - bottom) / (right - left) + 0.35)
+    figure.set_size_inches(WIDE, min(WIDE * (top - bottom) / (right - left), HIGH) + 0.35)
     for order, (kind, points, style) in enumerate(items):
         xs, ys = zip(*points, strict=True)
         if kind == "line":
@@ -46,12 +49,11 @@ def paint(figure, drawn, F=math.nan, title=""):
     _name(figure, axes, items)
 
 
-def _limits(drawn):
+def _limits(items, left, right, bottom, top):
     """What is shown: the frame, and more where something reaches farther, but for what has no end."""
-    ended = primitives([item for item in drawn.items if item[0] not in ("track", "wall")])
-    corners = [(drawn.xlim[0], drawn.ylim[0]), (drawn.xlim[1], drawn.ylim[1])]
-    reach = np.concatenate([corners, *(points for _, points, _ in ended)])
-    spare, frame = 0.01 * (drawn.xlim[1] - drawn.xlim[0]), (drawn.xlim, drawn.ylim)
+    ended = primitives([item for item in items if item[0] not in ("track", "wall")])
+    reach = np.concatenate([[(left, bottom), (right, top)], *(points for _, points, _ in ended)])
+    spare, frame = 0.01 * (right - left), ((left, right), (bottom, top))
     return [
         (min(low, mine.min() - spare), max(high, mine.max() + spare)) for (low, high), mine in zip(frame, reach.T, strict=True)
     ]

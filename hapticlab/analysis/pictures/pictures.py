@@ -71,7 +71,7 @@ def picture(name: str | Scene | Callable[..., Scene], **state: float | str) -> F
         except FloatingPointError:
             given = ", ".join(f"{key} = {value}" for key, value in state.items())
             raise AnalysisError(f"{name} cannot be put together with {given}; take other lengths or another place") from None
-        paint(figure, drawn, title=scene.name)
+        paint(figure, drawn.items, (*drawn.xlim, *drawn.ylim), title=scene.name)
     return figure
 
 
