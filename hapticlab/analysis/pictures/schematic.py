@@ -157,9 +157,11 @@ class Schematic:
             s.disc((at, level * u), half * u, name=name)
             s.text((at, level * u), word)
         else:
-            s.block((at, level * u), 2 * half, self._height(name), word if half > 1 else "", name=name)
-            if half < 1:
+            s.block((at, level * u), 2 * half, self._height(name), name=name)
+            if half < 1:  # too thin for its letter
                 s.text((at, -self._height(name) / 2 * u), word, up=-2.0)
+            elif word:
+                s.text((at, level * u), word, right=-4.0 if name in self.carried.values() else 0.0)
         if name in self.parts.drives:
             self._drive(s, self.parts.drives[name], at, (level + self._height(name) / 2) * u)
         if name in self.rough:
