@@ -69,7 +69,7 @@ def _entry(names, of_type, said):
     units = [unit.strip() for group in groups for unit in group.split(",")]
     meanings = [_short(said)] + [""] * (len(names) - 1)
     if len(names) == len(groups) == len(units) > 1:  # each after what it measures: Mass [kg], damping [N s/m] and stiffness [N/m]
-        meanings = [_short(re.split(r"[.;:,]", part.strip(" ,;"))[-1]) for part in _UNIT.split(said)[0:-1:2]]
+        meanings = [_short(re.split(r"(?<!Fig)(?<!Eq)[.;:,]\s", part.strip(" ,;"))[-1]) for part in _UNIT.split(said)[0:-1:2]]
     elif len(units) < len(names):
         units = units[:1] * len(names) if units and ";" not in said.split("[")[0] else []
     units = units or _UNIT.findall(of_type)[:1] * len(names) or [""] * len(names)
@@ -118,6 +118,17 @@ def plain_unit(unit: str) -> str:
     return "" if unit == "1" else unit.replace("*", " ")
 
 
+def short(number: float) -> str:
+    """A number in four digits or so, without a power of ten where none is needed.
+
+    Examples
+    --------
+    >>> short(799107.4), short(0.000123456), short(3.0)
+    ('799107', '0.0001235', '3')
+    """
+    return f"{number:.0f}" if 1e4 <= abs(number) < 1e7 else f"{number:.4g}"
+
+
 def in_words(value: Any, unit: str = "") -> tuple[str, str]:
     """A value as a short text, and the unit that is shown with it; an empty text for what no line can say.
 
@@ -136,7 +147,7 @@ def in_words(value: Any, unit: str = "") -> tuple[str, str]:
         return str(value), ""
     if isinstance(value, (int, float)):
         factor, unit = shown_unit([value], unit)
-        return ("not known", "") if value != value else (f"{value * factor:.5g}", unit)
+        return ("not known", "") if value != value else (short(value * factor), unit)
     if isinstance(value, str):
         return str(value), ""
     if isinstance(value, Mapping):
@@ -160,7 +171,7 @@ def _of_array(array, unit):
         return f"{array.sum()} of {array.size}", ""
     known = array[abs(array) < math.inf]
     factor, unit = shown_unit(known, unit)
-    span = f", {known.min() * factor:.4g} to {known.max() * factor:.4g}" if len(known) else ""
+    span = f", {short(known.min() * factor)} to {short(known.max() * factor)}" if len(known) else ""
     return f"{' x '.join(map(str, array.shape))} values{span}", unit
 
 
@@ -168,8 +179,8 @@ def _of_sequence(parts, unit):
     if parts and all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in parts):
         factor, unit = shown_unit(parts, unit)
         if len(parts) > 6:
-            return f"{len(parts)} values, {min(parts) * factor:.4g} to {max(parts) * factor:.4g}", unit
-        return ", ".join(f"{part * factor:.5g}" for part in parts), unit
+            return f"{len(parts)} values, {short(min(parts) * factor)} to {short(max(parts) * factor)}", unit
+        return ", ".join(short(part * factor) for part in parts), unit
     if len(parts) > 6 or any(is_dataclass(part) for part in parts):
         return f"{len(parts)} of them", ""
     return "; ".join(filter(None, (_joined(in_words(part)) for part in parts))), ""

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import Any
 
 from ..errors import AnalysisError
-from .facts import facts, in_words, shown_unit
+from .facts import facts, in_words, short, shown_unit
 
 
 class Grid:
@@ -66,7 +66,7 @@ class Grid:
         factor, _ = self._scales[name]
         value = value.item() if hasattr(value, "item") and not value.shape else value
         if isinstance(value, float):
-            return "" if value != value else f"{value * factor:.5g}"
+            return "" if value != value else short(value * factor)
         return " ".join(filter(None, in_words(value)))
 
     def to_pandas(self) -> Any:

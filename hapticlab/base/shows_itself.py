@@ -18,6 +18,8 @@ from .grid import Grid
 
 #: facts and rows that are shown before the rest is folded, or left to print and to_pandas
 OPEN, ROWS = 8, 20
+#: numbers of one fact that stand in a line
+FEW = 6
 _LINE = "var(--jp-border-color2, rgba(128, 128, 128, 0.4))"
 _ROW = f"border-bottom: 1px solid {_LINE}"
 _CELL = "text-align: left; padding: 0.15em 1em 0.15em 0; border: 0"
@@ -52,8 +54,12 @@ class ShowsItself:
     hidden: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Give one line to ``repr`` where a class says itself by ``__str__``: a dataclass keeps a method that is there."""
+        """Give a class one line for ``repr``, where it says itself by ``__str__``: a dataclass keeps a method that is there.
+
+        IPython looks for both methods in one class after the other, so each has its own entry.
+        """
         super().__init_subclass__(**options)
+        cls._repr_pretty_ = ShowsItself._all_words  # type: ignore[attr-defined]
         if "__repr__" not in cls.__dict__ and cls.__str__ is not object.__str__:
             cls.__repr__ = _in_one_line  # type: ignore[method-assign]
 
@@ -83,7 +89,7 @@ class ShowsItself:
     def _line(self) -> str:
         return f"{type(self).__name__}({self._sentence()})"
 
-    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+    def _all_words(self, printer: Any, cycle: bool) -> None:
         """All words where it stands alone in a cell, its one line inside a list or a dict."""
         lines = [repr(self)] if cycle or len(printer.stack) > 1 else str(self).split("\n")
         for number, line in enumerate(lines):
@@ -99,7 +105,8 @@ class ShowsItself:
 
     def _is_open(self, fact):
         """Whether a fact stands in the table: numbers do, texts and arrays are folded."""
-        return isinstance(fact.value, (bool, int, float))
+        few = isinstance(fact.value, tuple) and 0 < len(fact.value) <= FEW
+        return all(isinstance(part, (bool, int, float)) for part in (fact.value if few else [fact.value]))
 
     def _rows(self):
         """The rows of the table of facts, and those that are folded: also what is beyond the first few."""
@@ -113,9 +120,11 @@ class ShowsItself:
 
     def _body_html(self):
         rows, folded = self._rows()
-        told = [_fact_table(rows)]
-        told += [f"{_caption(name)}{grid_html(grid)}" for name, grid in self._tables() if len(grid)]
-        told += [_drawn(self._figure), _folded("More facts", _fact_table(folded))]
+        tables = [(name, grid) for name, grid in self._tables() if len(grid)]
+        open_ones = [(name, grid) for name, grid in tables if len(grid) <= OPEN or isinstance(self, Tabular)]
+        told = [_fact_table(rows), *(f"{_caption(name)}{grid_html(grid)}" for name, grid in open_ones), _drawn(self._figure)]
+        told += [_folded(f"{_title(one[0])}: {len(one[1])}", grid_html(one[1])) for one in tables if one not in open_ones]
+        told += [_folded("More facts", _fact_table(folded))]
         told += [_folded(title, f"<pre>{escape(text)}</pre>") for title, text in self._details()]
         return "".join(told)
 
@@ -161,8 +170,12 @@ def _aligned(lines):
 
 def _upper(sentence):
     """The sentence with a capital where it begins with a word, not with a symbol or a name of the code."""
-    first = sentence.split(" ")[0].rstrip(",:;")
-    return sentence[:1].upper() + sentence[1:] if first.isalpha() and first.islower() and len(first) > 2 else sentence
+    first = sentence.split(" ")[0]
+    return (
+        sentence[:1].upper() + sentence[1:]
+        if first.isalpha() and first.islower() and (len(first) > 1 or first == "a")
+        else sentence
+    )
 
 
 def _fact_table(rows):
@@ -191,7 +204,11 @@ def _cell(text):
 
 
 def _caption(name):
-    return f'<p style="margin: 0.4em 0 0">{escape(name.replace("_", " "))}</p>' if name else ""
+    return f'<p style="margin: 0.4em 0 0">{escape(_title(name))}</p>' if name not in ("", "rows") else ""
+
+
+def _title(name):
+    return name[:1].upper() + name[1:].replace("_", " ")
 
 
 def _drawn(figure):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .drawing import COLD, WARM, axis_label, house_style, new_figure
+from .drawing import COLD, SHOWN, WARM, house_style, new_figure
 
 if TYPE_CHECKING:
     from .telemetry import Telemetry
@@ -17,7 +17,7 @@ def thumbnail(log: Telemetry) -> Any:
     with house_style():
         figure = new_figure(height=1.7, width=6.4)
         for axes, name, colour in zip(figure.subplots(1, 2), ("x", "F"), (COLD, WARM), strict=True):
-            scale, label = axis_label(name, log.units[name])
+            scale, unit = SHOWN.get(log.units[name], (1.0, log.units[name]))
             axes.plot(log.t, scale * getattr(log, name), color=colour)
-            axes.set(xlabel="time t [s]", ylabel=label)
+            axes.set(xlabel="time t [s]", ylabel=f"{name} [{unit}]")
     return figure

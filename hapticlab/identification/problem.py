@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.shows_itself import ShowsItself
 from .held_force_motion import positions
 from .scoring import fit, noise_of
 from .start import begin
@@ -38,7 +39,7 @@ LIGHTER = tuple((m, b, 1.0) for m in (1.0, 0.5, 0.25) for b in (1.0, 0.1))
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class Trace(ShowsItself):
     """Positions y [m] of a handle under forces F [N], every T [s], shape (N, L) and (N,) or (N, L): L of a kind.
 
     ``added`` is a known mass that was fixed to the handle [kg], ``push`` a known constant force beside the motor's [N].
@@ -51,6 +52,9 @@ class Trace:
     added: float = 0.0
     push: float = 0.0
     rests: bool = False
+
+    def __str__(self) -> str:
+        return f"{len(self.y)} samples of a handle under known forces, every {1e3 * self.T:g} ms"
 
     def start(self, lane, known, **how):
         """First values of the paddle's constants, and of position and velocity, from one of the records."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, get_args
 
+import numpy as np
+
 from ..base.arguments import choice, count, numbers
 from ..base.shows_itself import ShowsItself
 from .impedance_signal import How
@@ -44,6 +46,13 @@ class Excitation(ShowsItself):
     frequency: ArrayLike | None = None
     amplitude: float | None = None
     seed: int = 0
+
+    def __str__(self) -> str:
+        lines = "" if self.frequency is None else f" of {np.size(self.frequency)} lines"
+        amplitude = "" if self.amplitude is None else f", amplitude {self.amplitude:g}"
+        return (
+            f"{self.how.replace('_', ' ')}{lines} by the {self.drive or 'hand, or else the motor'}{amplitude}, seed {self.seed}"
+        )
 
     def __post_init__(self) -> None:
         choice("how", self.how, get_args(How))

@@ -189,10 +189,17 @@ class Scene(Typeset):
         return [f"F_e = {typeset(self.force)}", *shown]
 
     def _facts(self):
-        return [Fact(name, self.values[name], one.unit, "") for name, one in self.parameters.items() if name in self.values]
+        given = [(name, one, self.values.get(name)) for name, one in self.parameters.items()]
+        return [
+            Fact(name, "no value yet", "", f"In {one.unit}") if value is None else Fact(name, value, one.unit, "")
+            for name, one, value in given
+        ]
+
+    def _is_open(self, fact):
+        return True
 
     def _tables(self):
-        yield "recorded beside x, v and F", Grid({"watch": list(self.watch), "unit": list(self.watch_units.values())})
+        yield "Recorded beside x, v and F", Grid({"watch": list(self.watch), "unit": list(self.watch_units.values())})
 
 
 def _unit_shown(expr):

@@ -35,7 +35,7 @@ class PortLimit(ShowsItself):
         Least damping of a device [N s/m] with which the sampled scene is passive; inf where none is enough, nan where
         the scene falls from there by itself, or pushes the handle away ever more: negative stiffness.
     floor : float
-        What the force asks for that follows the handle alone, its bodies held: k T/2 + b of a spring and a damper.
+        What the force asks for that follows the handle alone, its bodies held [N s/m]: k T/2 + b of a spring and a damper.
     frequency : float
         Where b_req is asked for [Hz].
     reason : str

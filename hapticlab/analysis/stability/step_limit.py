@@ -71,6 +71,9 @@ class ModeLimit(ShowsItself):
     steps_per_contact: float
     step: Callable[[Array], Array] = field(repr=False)
 
+    def __str__(self) -> str:
+        return f"{self.mode}; {self.point}: h_max = {1e3 * self.h_max:.4g} ms, margin {self.margin:.3g}"
+
 
 @dataclass(frozen=True, eq=False)
 class StepLimit(Tabular):

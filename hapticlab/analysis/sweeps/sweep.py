@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 OPTIONS = ("method", "substeps", "hold", "force_at")
 
 
+METRIC = "The metric at every point; nan where the program faulted"
+
+
 @dataclass(frozen=True, eq=False)
 class Sweep(ShowsItself, Guessed):
     """A metric over a grid.
@@ -82,7 +85,7 @@ class Sweep(ShowsItself, Guessed):
 
     def _facts(self):
         swept = [Fact(name, values, self.units.get(name, ""), "Swept") for name, values in self.axes.items()]
-        return [*swept, *(f._replace(unit=self.unit) if f.name == "values" else f for f in super()._facts())]
+        return [*swept, *(f._replace(unit=self.unit, meaning=METRIC) if f.name == "values" else f for f in super()._facts())]
 
     def _is_open(self, fact):
         return fact.name in (*self.axes, "values")

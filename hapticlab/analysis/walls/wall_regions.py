@@ -58,7 +58,7 @@ class WallMap(ShowsItself):
     about : str
         Law, paddle and start, in lines.
     seconds : float
-        How long the map took.
+        How long the map took [s].
     """
 
     axes: dict[str, Array]

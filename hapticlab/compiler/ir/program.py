@@ -14,7 +14,7 @@ from numbers import Real
 
 import numpy as np
 
-from ...base.facts import Fact
+from ...base.facts import Fact, short
 from ...base.grid import Grid
 from ...base.shows_itself import ShowsItself
 from ...errors import ProgramError
@@ -60,6 +60,13 @@ class Block:
     def __len__(self):
         """Count the instructions that compute; leaves cost nothing."""
         return sum(i.op not in LEAVES for i in self.instructions)
+
+
+#: what the facts of a program mean
+MADE = {
+    "substeps": "Steps of the method in a tick", "margin": "Longest stable step over the step taken",
+    "hold": "How the equations see the handle between samples", "velocity": "Where v(n) comes from", "dtype": "Of its numbers",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -166,7 +173,7 @@ class Program(ShowsItself):
         listed = {name: ", ".join(c.name for c in getattr(self, name)) for name in ("inputs", "states", "outputs")}
         meanings = ("What it reads at each sample", "What it keeps from tick to tick", "What it gives: the force first")
         shown += [Fact(name, listed[name], "", words) for name, words in zip(listed, meanings, strict=True)]
-        return shown + [Fact(name, value, "", "") for name, value in self.facts.items() if name != "method"]
+        return shown + [Fact(name, value, "", MADE.get(name, "")) for name, value in self.facts.items() if name != "method"]
 
     def _tables(self):
         # opened where a notebook asks: a board's cost is computed of programs, above this module
@@ -197,8 +204,8 @@ class Program(ShowsItself):
 
 def _stable(low=-math.inf, value=math.nan, high=math.inf):
     """Between what a live parameter keeps the steps of a program stable, in words."""
-    least = f"from {low:.4g} on" if high == math.inf else f"from {low:.4g} "
-    most = "" if high == math.inf else f"up to {high:.4g}"
+    least = f"from {short(low)} on" if high == math.inf else f"from {short(low)} "
+    most = "" if high == math.inf else f"up to {short(high)}"
     return "" if low == -math.inf and high == math.inf else f"Steps are stable {least if low > -math.inf else ''}{most}"
 
 
