@@ -15,13 +15,15 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import EngineMissingError
-from .frame import COLUMNS
 from .session import PRESSES
 
 KINDS = ("ready", "alive", "gone", "intend", "hold", "move", "press")
 BROWSER = Path(__file__).parent / "browser"
-SCRIPTS = ("playback.js", "labels.js", "parts.js", "picture.js", "traces.js", "sliders.js", "hand.js", "view.js")
-#: time on view in the traces [s]
+SCRIPTS = (
+    "samples.js", "playback.js", "labels.js", "parts.js", "picture.js", "bins.js", "traces.js", "loop.js", "sound.js", "sliders.js",
+    "hand.js", "words.js", "controls.js", "view.js", "kernel.js",
+)  # fmt: skip
+#: time on view in the traces, of the clock [s]
 SECONDS = 4.0
 #: two clocks may drift apart so fast, and an age of a press be wrong by that of a heartbeat at most [s/s]
 DRIFT = 0.01
@@ -55,8 +57,8 @@ def about(session):
     """Facts that a view needs of a session before its first frame."""
     told = session.description()
     if told["kind"] == "board":
-        told["help"] += " So it does where nobody sees this browser tab for 3 s."
-    return {**told, "presses": list(PRESSES), "seconds": SECONDS * min(told["speed"], 1.0)}
+        told["help"] += " It also goes off when this view is out of sight for 3 s."
+    return {**told, "presses": list(PRESSES), "seconds": SECONDS}
 
 
 class Speaker:
@@ -167,7 +169,7 @@ def take_apart(picture):
 
 def pack(now, frame, points):
     """Return the bytes of a frame that leaves at a moment [s]."""
-    rows = np.asarray(frame.rows, dtype="<f4").reshape(-1, len(COLUMNS))
+    rows = np.asarray(frame.rows, dtype="<f4")
     return struct.pack("<3d", now, frame.time, len(rows)) + rows.tobytes() + points.tobytes()
 
 

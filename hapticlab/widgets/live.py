@@ -18,7 +18,8 @@ from ..device.simulated.stepping import with_grip
 from ..errors import EngineMissingError, PaddleError
 from ..scene.scene import check_scene
 from .browser_view import front as canvas
-from .plain_view import front as plain
+from .plain_view import front as plain_widgets
+from .plain_view import still_picture
 from .session import Session
 
 if TYPE_CHECKING:
@@ -29,6 +30,11 @@ if TYPE_CHECKING:
 
 #: scene time over the clock's time
 SPEEDS = (1e-3, 10.0)
+#: where widgets are not shown: beside a picture that stands still
+STILL = (
+    "This is a still picture of a live view. It moves where a notebook shows widgets: run its cell in JupyterLab with "
+    "hapticlab[notebook] installed, or try hl.live(..., plain=True)."
+)
 RECORD = "press Start and then Record in the view, push, and press Stop recording"
 
 
@@ -42,6 +48,7 @@ def live(
     show_force: bool = True,
     let_go: bool = False,
     rehearsal: Rehearsal = REHEARSAL,
+    plain: bool = False,
     **compile_options: Any,
 ) -> LiveView:
     """Show a paddle and a scene in a notebook: it moves, can be pushed, and every parameter has a slider.
@@ -71,6 +78,8 @@ def live(
         thrown. On a board the hand is yours, and nothing changes.
     rehearsal : Rehearsal
         What the hand does for ``view.rehearsal``: ``hl.people.Rehearsal(intent=, duration=)``.
+    plain : bool
+        True shows the view of plain widgets (ipywidgets alone), where a front end does not load anywidget.
     **compile_options
         Of hapticlab.compile: method, substeps, hold, dtype, live.
 
@@ -105,14 +114,14 @@ def live(
     _check_options(compile_options)
     looks = {"sliders": sliders, "speed": time_scale, "picture": picture, "show_force": show_force, "let_go": let_go}
     session = Session(paddle, scene, **looks, **compile_options)
-    return LiveView(session, rehearsal, compile_options)
+    return LiveView(session, rehearsal, compile_options, plain)
 
 
 class LiveView:
     """A paddle and a scene on view; made by :func:`live`."""
 
-    def __init__(self, session, rehearsal, options):
-        self._session, self._options = session, options
+    def __init__(self, session, rehearsal, options, plain=False):
+        self._session, self._options, self._plain = session, options, plain
         self._rehearsal, self._duration = rehearsal.path(), rehearsal.duration
         self._front, self._rehearsed = None, (None, None)
         # whoever else keeps the session, its thread or a widget, it ends with this view
@@ -212,12 +221,11 @@ class LiveView:
 
     def _repr_mimebundle_(self, **options):
         if self._front is None:
-            self._front = _front(self._session)
+            self._front = _front(self._session, (plain_widgets,) if self._plain else (canvas, plain_widgets))
         bundle = {} if self._front is None else self._front._repr_mimebundle_(**options)
-        text = f"{self!r}\nIt moves where a notebook shows widgets (JupyterLab, with: pip install 'hapticlab[notebook]')."
-        if isinstance(bundle, tuple):
-            return {**bundle[0], "text/plain": text}, bundle[1]
-        return {**(bundle or {}), "text/plain": text}
+        bundle, metadata = bundle if isinstance(bundle, tuple) else (bundle or {}, {})
+        still = {"text/plain": f"{self!r}\n{STILL}", "text/html": still_picture(self._session, STILL)}
+        return {**bundle, **still}, metadata
 
 
 def _check_options(options):
@@ -227,9 +235,9 @@ def _check_options(options):
             raise PaddleError(f"{name} is no option of a live view, and none of hapticlab.compile: {', '.join(allowed)}")
 
 
-def _front(session):
-    """Return the widget that shows a session: anywidget's where it imports, else plain ones, else None."""
-    for make in (canvas, plain):
+def _front(session, kinds):
+    """Return the widget that shows a session, of the first kind that imports: anywidget's, then plain ones; else None."""
+    for make in kinds:
         try:
             return make(session)
         except EngineMissingError:

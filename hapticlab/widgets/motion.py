@@ -25,6 +25,10 @@ class Motion:
         Scene time over the clock's time.
     clock : callable
         Seconds.
+    watched : sequence of str
+        Channels that frames carry.
+    touching : callable, optional
+        Of samples and parameters: whether the environment is touched, see :func:`~hapticlab.widgets.touching.touching`.
 
     Attributes
     ----------
@@ -37,14 +41,15 @@ class Motion:
         Since the start, an event was left unlocated.
     """
 
-    def __init__(self, source, speed, clock):
+    def __init__(self, source, speed, clock, watched=(), touching=None):
         self.source, self.speed, self.clock = source, speed, clock
+        self.watched, self._touching = tuple(watched), touching
         self.pace = Pace(source.paddle.T, speed)
         self.running, self.held, self.log, self.missed = False, True, None, False
         self._recorder = self._replay = self._live = None
         self._at = 0.0
         self._last, self._noticed = {"x": 0.0, "F": 0.0}, {}
-        self.traces = Traces(source.period)
+        self.traces = Traces(source.period, watched)
 
     @property
     def recording(self):
@@ -75,9 +80,10 @@ class Motion:
         waits = self._recorder is not None and not self._recorder.samples
         self.stop_recording()
         self.source.stop()
-        self.traces, self._at, self._noticed, self.missed = Traces(self.source.period), 0.0, {}, False
+        self.traces, self._noticed, self.missed = Traces(self.source.period, self.watched), {}, False
         self.source.start()
-        self._last = {"x": self.source.place, "F": 0.0}  # not where it was before
+        self._at = self.source.place
+        self._last = {"x": self._at, "F": 0.0}  # not where it was before
         self.running = True
         if waits:
             self.record()
@@ -105,6 +111,13 @@ class Motion:
     def wake(self):
         """Count time from now on: what passed before is not made up for."""
         self.pace.start(self.clock())
+
+    def pass_at(self, speed):
+        """Let scene time pass at another speed over the clock's from now on."""
+        self.speed = speed
+        self.pace.pass_at(speed)
+        if self._replay is not None:
+            self._replay.pass_at(speed, self.clock())
 
     def hold(self, held):
         """Take the handle, or let go of it."""
@@ -140,7 +153,7 @@ class Motion:
         if log is None:
             self._end_replay()
             return
-        replay, traces = Replay(log, self.speed, self.clock()), Traces(log.T)
+        replay, traces = Replay(log, self.speed, self.clock()), Traces(log.T, self.watched)
         if self.source.kind == "board":
             self.pause()
         self._live = self._live or (self.traces, self._last)
@@ -157,15 +170,20 @@ class Motion:
             samples = self._lead(self.pace.due(now), wanted) if self.running else None
         if samples is None or not len(samples["t"]):
             return None
+        if self._touching is not None:
+            samples = {**samples, "contact": self._touching(samples, self._parameters)}
         self._last = {name: float(column[-1]) for name, column in samples.items()}
         return self.traces.add(samples)
 
+    @property
+    def _parameters(self):
+        return self._replay.parameters if self._replay is not None else named_values(self.source.program)
+
     def values(self, wanted=None):
         """Values that a picture is drawn from: the last sample, the parameters, and where the hand is wanted now [m]."""
-        parameters = self._replay.parameters if self._replay is not None else named_values(self.source.program)
         led = wanted is not None and self.source.kind == "simulated" and self.held and not self.replaying
         pointer = {"intent": wanted} if led else {}
-        return {"T": self.source.paddle.T, **parameters, **self._last, "x": self.place, **pointer}
+        return {"T": self.source.paddle.T, **self._parameters, **self._last, "x": self.place, **pointer}
 
     def noticed(self):
         """Return the flags of a Telemetry that were raised within the last second: saturated, gap, overrun."""

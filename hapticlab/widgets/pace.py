@@ -39,6 +39,11 @@ class Pace:
         """Count from here on [s]."""
         self._begun, self._done = now, 0
 
+    def pass_at(self, speed):
+        """Go on at another speed from the last tick that was due."""
+        self._begun += self._done * self.T / self.speed
+        self._done, self.speed = 0, speed
+
     def due(self, now):
         """Return the ticks to do now."""
         wanted = int((now - self._begun) * self.speed / self.T + 1e-6) - self._done

@@ -1,12 +1,13 @@
 """The live view without anywidget: a picture in SVG, sliders and buttons of ipywidgets."""
 
+import base64
 import html
 import math
 
 import numpy as np
 
 from ..library.parts import primitives
-from .frame import COLUMNS, Frame
+from .frame import Frame
 from .plain_letters import plain
 from .sliders import open_ipywidgets
 
@@ -55,7 +56,7 @@ class PlainFront:
 
     def __init__(self, widgets, session):
         self.session, self.about = session, session.description()
-        self._rows, self._drawn = np.zeros((0, len(COLUMNS))), -1.0
+        self._rows, self._drawn = np.zeros((0, len(self.about["columns"]))), -1.0
         self._moved, self._showing = {}, False
         self._beaten = self._touched = -math.inf
         self.image, self.status = widgets.HTML(), widgets.HTML("Press a button or move a slider to begin.")
@@ -75,7 +76,7 @@ class PlainFront:
         self.box = widgets.VBox(
             [widgets.HBox(list(self.buttons.values())), self.image, self.status, *hand, *self.sliders, help_, self.heart]
         )
-        self.show(Frame(0.0, picture=session.picture.draw(session.motion.values(0.0))))
+        self.show(Frame(0.0, np.zeros((0, len(self.about["columns"]))), session.picture.draw(session.motion.values(0.0))))
         session.connect(self.show)
 
     def _say(self, what, *given):
@@ -95,7 +96,8 @@ class PlainFront:
 
     def show(self, frame):
         """Draw a frame, if the one before is long enough ago."""
-        self._rows = np.concatenate([self._rows, frame.rows])
+        if len(frame.rows):
+            self._rows = np.concatenate([self._rows, frame.rows])
         if len(frame.rows) and frame.rows[0, 0] < self._rows[0, 0]:
             self._rows = np.asarray(frame.rows)  # time began anew
         self._rows = self._rows[self._rows[:, 0] > frame.time - SECONDS]
@@ -112,7 +114,7 @@ class PlainFront:
     def _switch(self, flags):
         """Switch off the buttons that would do nothing now; never what stops a motor."""
         running, recording, recorded = (flags.get(name, False) for name in ("running", "recording", "recorded"))
-        off = {"resume": running, "start": running, "pause": False, "record": recording, "stop": not recording}
+        off = {"resume": running, "start": running, "pause": False, "record": recording, "stop": not recording, "restart": False}
         for name, button in self.buttons.items():
             button.disabled = bool({**off, "save": not recorded, "replay": not recorded}[name]) and self.session.on_view
 
@@ -121,10 +123,10 @@ class PlainFront:
         self._showing, now = True, self.session.clock()
         try:
             for number, (slider, given) in enumerate(zip(self.sliders, self.about["parameters"], strict=True)):
-                value = values.get(given["name"], slider.value)
+                value = given["scale"] * values[given["name"]] if given["name"] in values else slider.value
                 if now - self._moved.get(number, -MOVING) < MOVING:
                     continue
-                if abs(value - slider.value) > 1e-6 * (given["high"] - given["low"]):
+                if abs(value - slider.value) > 1e-6 * (slider.max - slider.min):
                     slider.value = value
         finally:
             self._showing = False
@@ -132,20 +134,21 @@ class PlainFront:
     def _presses(self):
         board = self.about["kind"] == "board"
         run = {"start": "Start motor", "pause": "Stop motor"} if board else {"resume": "Run", "pause": "Pause"}
-        return {**run, "record": "Record", "stop": "Stop recording", "save": "Save", "replay": "Replay"}
+        return {**run, "restart": "Start again", "record": "Record", "stop": "Stop recording", "save": "Save", "replay": "Replay"}
 
     def _slider(self, widgets, number, given):
-        low, high, step = on_a_grid(given["value"], given["low"], given["high"])
+        scale = given["scale"]
+        low, high, step = on_a_grid(*(scale * given[name] for name in ("value", "low", "high")))
         slider = widgets.FloatSlider(
-            value=given["value"], min=low, max=high, step=step,
-            description=f"{given['name']} [{given['unit']}]", tooltip=given["limit_words"],
+            value=scale * given["value"], min=low, max=high, step=step,
+            description=f"{given['name']} [{given['unit_shown'] or '1'}]", tooltip=given["limit_words"],
             readout_format=".4g", style={"description_width": "9em"}, layout={"width": f"{WIDTH}px"},
         )  # fmt: skip
 
         def moved(change):
             if not self._showing:
                 self._moved[number] = self.session.clock()
-                self._say(self.session.move, number, change["new"])
+                self._say(self.session.move, number, change["new"] / scale)
 
         slider.observe(moved, names="value")
         return slider
@@ -166,6 +169,16 @@ def on_a_grid(value, low, high):
     return value - below * step, value + above * step, step
 
 
+def still_picture(session, words):
+    """Return HTML of the scene as it is now, as an image, with a sentence: for a page without widgets."""
+    about = session.description()
+    image = svg(Frame(0.0, picture=session.stage.drawn(None)), np.zeros((0, 1)), about)
+    image = image.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ')
+    data = base64.b64encode(image.encode()).decode()
+    alt = html.escape(f"{about['title']}: picture of the scene at rest")
+    return f'<img alt="{alt}" width="{WIDTH}" src="data:image/svg+xml;base64,{data}"><p>{html.escape(words)}</p>'
+
+
 def svg(frame, rows, about):
     """Return a frame as SVG: the picture, and the traces of the last seconds under it."""
     left, right, bottom, top = about["box"]
@@ -177,12 +190,15 @@ def svg(frame, rows, about):
 
     force = float(rows[-1, 2]) if len(rows) else math.nan
     picture = "".join(_item(item, place) for item in primitives(frame.picture, force))
-    traces = "".join(_trace(k, trace, rows, frame.time) for k, trace in enumerate(about["traces"]))
-    now = [f"{trace['label']} = {rows[-1, k + 1] * trace['scale']:.3g} {trace['unit_shown']}" for k, trace in
-           enumerate(about["traces"])] if len(rows) else []  # fmt: skip
+    opened = [trace for trace in about["traces"] if trace["open"]] if len(rows) else []
+    shown = [rows[:, about["columns"].index(trace["name"])] * trace["scale"] for trace in opened]
+    traces = "".join(
+        _trace(k, trace, rows[:, 0], values, frame.time) for k, (trace, values) in enumerate(zip(opened, shown, strict=True))
+    )
+    now = [f"{trace['label']} = {values[-1]:.3g} {trace['unit_shown']}" for trace, values in zip(opened, shown, strict=True)]
     title = html.escape(", ".join([f"{about['title']} at {frame.time:.1f} s", *now]))
     return (
-        f'<svg role="img" aria-label="{title}" viewBox="0 0 {WIDTH} {HEIGHT + 3 * GRAPH}" width="{WIDTH}" '
+        f'<svg role="img" aria-label="{title}" viewBox="0 0 {WIDTH} {HEIGHT + len(opened) * GRAPH}" width="{WIDTH}" '
         f'style="background:#fff;font:12px sans-serif">{picture}{traces}</svg>'
     )
 
@@ -213,10 +229,10 @@ def _head(tail, tip, place, colour):
     return f'<path d="M{" L".join(f"{x:.1f},{y:.1f}" for x, y in corners)} Z" fill="{colour}"/>'
 
 
-def _trace(k, trace, rows, time):
+def _trace(k, trace, times, values, time):
     """Return one scrolling trace with its name, unit and range."""
     top = HEIGHT + k * GRAPH
-    t, shown = envelope(rows[:, 0], rows[:, k + 1] * trace["scale"], SECONDS / WIDTH * FINE)
+    t, shown = envelope(times, values, SECONDS / WIDTH * FINE)
     low, high = min(float(shown.min(initial=0.0)), 0.0), max(float(shown.max(initial=0.0)), 0.0)
     scale = (GRAPH - 32) / ((high - low) or 1.0)
     x, y = WIDTH * (1 - (time - t) / SECONDS), top + GRAPH - 12 - (shown - low) * scale

@@ -9,7 +9,7 @@ from ..errors import PaddleError
 from .stage import Stage
 
 #: presses that a front end has, see :meth:`Session.press`
-PRESSES = ("start", "pause", "resume", "record", "stop", "save", "replay")
+PRESSES = ("start", "pause", "resume", "record", "stop", "save", "replay", "restart", "slow")
 #: frames a second; where a hand moves, at least and at most so many, each as soon as it has moved
 RATE, SLOWEST, FASTEST = 60.0, 50.0, 65.0
 #: a hand that begins to move is waited for so long after a frame [s]
@@ -101,7 +101,8 @@ class Session:
     def press(self, name, age=0.0):
         """Press one of PRESSES, so long after it was pressed in the page [s].
 
-        "stop" ends a recording, "replay" begins to play one or ends it, "save" writes a file. A press that would start a
+        "stop" ends a recording, "replay" begins to play one or ends it, "save" writes a file, "restart" begins again at
+        the first state of the scene, "slow" begins or ends slow motion. A press that would start a
         board's motor is dropped, in words, where it comes late: :meth:`Stage.obey`. It came late too, whatever its age is
         said to be, where the views were not heard steadily before.
         """
@@ -223,10 +224,15 @@ class Session:
             self._silent = None
         self.stage.guarded(self.stage.wake)
         self.stage.obey([self._said.popleft() for _ in range(len(self._said))])
+        self._follow_caught()
         rows = self.stage.advance(self._wanted)
+        self._follow_caught()
+        return self.stage.frame(rows, self._wanted)
+
+    def _follow_caught(self):
+        """Let the hand begin where the stage has put it."""
         if self.stage.caught is not None:
             self._wanted, self.stage.caught = self.stage.caught, None
-        return self.stage.frame(rows, self._wanted)
 
     def _somebody_looks(self):
         """Forget views that are silent; return whether any is left."""

@@ -16,13 +16,24 @@ def source_of(paddle, scene, **options):
     raise PaddleError(f"paddle = {paddle!r}; a live view needs a SimulatedPaddle, or a board: hl.connect()")
 
 
-def help_words(source, speed):
+def overview_words(source, scene, along):
+    """Say what a view shows, to who does not see it."""
+    ways = "left and right" if abs(along[0]) > 0.5 else "down and up"
+    kind = "real" if source.kind == "board" else "simulated"
+    parameters = ", ".join(scene.parameters) or "none"
+    return (
+        f"Live view of {source.program.name}. The picture shows a handle that moves {ways}, and what it touches or carries. "
+        f"The paddle is {kind}. Below the picture are numbers, traces over time, the loop of force over position, and the "
+        f"parameters: {parameters}. Press D for the present details."
+    )
+
+
+def help_words(source):
     """Say what moves a handle on view."""
     if source.kind == "board":
         return "Start switches the motor on: hold the handle. The motor goes off with Stop, and when this view closes."
     hand = source.paddle.hand
-    slow = f" Time runs at {speed:g} of the clock's." if speed != 1 else ""
     return (
-        "Drag the handle, or use the arrow keys: they move where the hand means to be, and the hand's spring follows "
-        f"({hand.k:g} N/m, {hand.b:g} N s/m, {1e3 * hand.m:g} g).{slow}"
+        "Drag the handle, or use the arrow keys: they move the target position of the hand, and the spring and damper of the "
+        f"hand pull the handle there ({hand.k:g} N/m, {hand.b:g} N s/m, {1e3 * hand.m:g} g)."
     )

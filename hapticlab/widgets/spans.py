@@ -1,9 +1,10 @@
-"""What the sliders of a live view move: name, unit, value, ends, and the limit in words."""
+"""What the sliders of a live view move: name, unit, value, ends, the limit in words, and when a new value acts."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..base.drawing import SHOWN
 from ..base.units import dimension
 from ..compiler.ir.notes import why_of
 from ..compiler.tick.live_limits import NEAR
@@ -21,7 +22,10 @@ WIDE = 10.0
 
 @dataclass(frozen=True)
 class Span:
-    """A slider: from ``low`` to ``high``, now at ``value``, all in SI; ``limit_words`` says how far the parameter may go."""
+    """A slider: from ``low`` to ``high``, now at ``value``, all in SI; ``limit_words`` says how far the parameter may go.
+
+    ``scale`` times a number in SI is in ``unit_shown``; ``at_start``: a new value acts only where the scene starts again.
+    """
 
     name: str
     unit: str
@@ -29,6 +33,9 @@ class Span:
     low: float
     high: float
     limit_words: str = ""
+    scale: float = 1.0
+    unit_shown: str = ""
+    at_start: bool = False
 
 
 def spans(program, sliders=None):
@@ -63,13 +70,38 @@ def spans(program, sliders=None):
         if name not in channels:
             listed, why = ", ".join(channels) or "none", why_of(program.notes, name)
             raise ParameterError(f"sliders: {name} is no live parameter of {program.name}{why}; there are {listed}")
-    return tuple(_span(*channels[name], ends, program.limits.get(name)) for name, ends in chosen.items())
+    late = _only_at_start(program)
+    return tuple(_span(*channels[name], ends, program.limits.get(name), name in late) for name, ends in chosen.items())
 
 
-def _span(channel, value, ends, stable):
+def shown_unit(unit):
+    """Return what a number in SI is multiplied by to be shown, and its unit as a person writes it.
+
+    Examples
+    --------
+    >>> shown_unit("m"), shown_unit("m*s^-1"), shown_unit("N*s/m"), shown_unit("1")
+    ((1000.0, 'mm'), (1.0, 'm/s'), (1.0, 'N s/m'), (1.0, ''))
+    """
+    if unit in SHOWN:
+        return SHOWN[unit]
+    above = [part for part in unit.split("*") if "^-" not in part]
+    below = [part.replace("^-1", "").replace("^-", "^") for part in unit.split("*") if "^-" in part]
+    words = " ".join(above) + "".join(f"/{part}" for part in below) if above else unit.replace("*", " ")
+    return 1.0, "" if words == "1" else words
+
+
+def _only_at_start(program):
+    """Return the names of the parameters that the first states depend on, and no tick."""
+    at_start, later = ({i.index for i in block.instructions if i.op == "param"} for block in (program.init, program.tick))
+    return {program.parameters[k].name for k in at_start - later}
+
+
+def _span(channel, value, ends, stable, at_start):
     low, high = _usual(channel, value) if ends is None else _given(channel, ends)
     low, high = max(low, channel.low), min(high, channel.high)
-    return Span(channel.name, channel.unit, value, min(low, value), max(high, value), _words(channel, value, stable))
+    scale, shown = shown_unit(channel.unit)
+    words = _words(channel, value, stable, scale, shown)
+    return Span(channel.name, channel.unit, value, min(low, value), max(high, value), words, scale, shown, at_start)
 
 
 def _usual(channel, value):
@@ -96,14 +128,14 @@ def _given(channel, ends):
     return low, high
 
 
-def _words(channel, value, stable):
+def _words(channel, value, stable, scale, shown):
     """Say what the parameter's own range is, and up to where the steps are stable."""
-    unit = "" if channel.unit == "1" else " " + channel.unit.replace("*", " ")
-    allowed = _interval(channel.name, channel.low, channel.high, unit)
+    unit = f" {shown}" if shown else ""
+    allowed = _interval(channel.name, scale * channel.low, scale * channel.high, unit)
     ends = (stable[0], stable[2]) if stable else (-math.inf, math.inf)
     near = [math.isfinite(end) and 1 / NEAR < abs(end / (value or end)) < NEAR for end in ends]
     low, high = (end if told else away for end, told, away in zip(ends, near, (-math.inf, math.inf), strict=True))
-    stays = _interval(channel.name, float(f"{low:.3g}"), float(f"{high:.3g}"), unit)
+    stays = _interval(channel.name, float(f"{scale * low:.3g}"), float(f"{scale * high:.3g}"), unit)
     return "; ".join([f"allowed {allowed}"] * bool(allowed) + [f"steps are stable for {stays}"] * bool(stays))
 
 

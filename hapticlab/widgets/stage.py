@@ -11,9 +11,12 @@ from ..errors import HapticlabError, PaddleError
 from .frame import COLUMNS, Frame
 from .motion import Motion
 from .picture import moving_picture
-from .sources import help_words, source_of
+from .signals import HIDING_FORCE, open_traces, signals
+from .sources import help_words, overview_words, source_of
 from .spans import spans
 from .status_words import MISSED, NOTICED, chatter_words, contact_words, late_words
+from .touching import touching
+from .traces import rows_apart
 
 #: pictures a second of a scene that rests
 RESTING = 4.0
@@ -24,11 +27,9 @@ TIMELY = 0.5
 #: a handle that was let go is caught so far past where a hand goes [m]
 PAST = 5e-3
 CAME_LATE = "Start came late, or just after the notebook was silent: press it again"
-TRACES = (
-    {"name": "x", "label": "x", "unit_shown": "mm", "scale": 1e3},
-    {"name": "F", "label": "F", "unit_shown": "N", "scale": 1.0},
-    {"name": "E", "label": "E drawn", "unit_shown": "mJ", "scale": 1e3},
-)
+MOTOR_OFF = "The motor is off. Press Start: the scene then begins at its first state"
+#: scene time over the clock's in slow motion
+SLOW = 0.1
 
 
 class Stage:
@@ -43,11 +44,15 @@ class Stage:
     """
 
     def __init__(self, paddle, scene, *, clock, sliders=None, speed=1.0, picture=None, show_force=True, let_go=False, **options):
-        self._let_go, self.picture, self._show_force = bool(let_go), moving_picture(scene, paddle, picture), show_force
+        self._let_go, self.hidden = bool(let_go), frozenset() if show_force else HIDING_FORCE
+        self.picture = moving_picture(scene, paddle, picture)
         self.scene = replace(scene, watch={**scene.watch, **self.picture.channels})
         self.source = source_of(paddle, self.scene, **options)
         self.spans = spans(self.source.program, sliders)
-        self.motion, self.clock = Motion(self.source, speed, clock), clock
+        self.signals, self._speed = signals(scene, self.hidden), speed
+        touched = touching(scene, self.scene.watch)
+        self.motion = Motion(self.source, speed, clock, tuple(scene.watch), touched)
+        self.touches, self.clock = touched is not None, clock
         self.awake, self._wants_to_run = False, self.source.kind == "simulated"
         self.stopped = "time stood still" if self._wants_to_run else "the motor went off"
         self.caught = None
@@ -62,25 +67,32 @@ class Stage:
     def description(self):
         """Facts that a front end is told once: a dict of what JSON can carry.
 
-        ``title``; ``kind``, "simulated" or "board"; ``parameters``, a list of {name, unit, value, low, high, limit_words};
-        ``traces``, a list of {name, label, unit_shown, scale}, where shown = scale * value in SI, in the order of a frame's
-        columns after t; ``x_range``, how far a hand goes, and ``box``, [left, right, bottom, top], of the picture [m];
-        ``along``, the direction in which the handle moves there; ``let_go``, whether a drag that is released lets go;
-        ``help``, words on what moves it; ``speed``; ``columns``.
+        ``title``; ``kind``, "simulated" or "board"; ``parameters``, a list of the fields of a Span and ``value``;
+        ``traces``, a list of {name, label, unit_shown, scale, open}, where shown = scale * value in SI, of the column of
+        that name, and ``open`` where its trace is there from the beginning; ``touches``, whether there is something to be
+        in contact with; ``loop``, whether F over x may be shown; ``x_range``, how far a hand goes, and ``box``, [left,
+        right, bottom, top], of the picture [m]; ``along``, the direction in which the handle moves there; ``let_go``,
+        whether a drag that is released lets go; ``overview`` and ``help``, words on what is seen and on what moves it;
+        ``speed``; ``T`` and ``apart``, between two samples and between two rows of a frame [s]; ``columns``.
         """
         box, values = self.picture.box, self.values
         return {
             "title": self.source.program.name,
             "kind": self.source.kind,
             "parameters": [{**asdict(span), "value": values[span.name]} for span in self.spans],
-            "traces": [dict(trace) for trace in (TRACES if self._show_force else TRACES[:1])],
+            "traces": open_traces(self.signals),
+            "touches": self.touches,
+            "loop": not self.hidden & {"x", "F"},
             "x_range": list(self.picture.reach),
             "box": list(box),
             "along": list(self.picture.along),
             "let_go": self._let_go,
-            "help": help_words(self.source, self.motion.speed),
+            "overview": overview_words(self.source, self.scene, self.picture.along),
+            "help": help_words(self.source),
             "speed": self.motion.speed,
-            "columns": list(COLUMNS),
+            "T": self.source.period,
+            "apart": rows_apart(self.source.period),
+            "columns": [*COLUMNS, *self.motion.watched],
         }
 
     # --- what it does
@@ -122,7 +134,7 @@ class Stage:
 
     def _pressed(self, name, when):
         """Do what a press asks for that was made at a time; the hand of a late one has left the board's handle."""
-        if name in ("start", "resume") and self.source.kind == "board" and self.clock() - when > TIMELY:
+        if name in ("start", "resume", "restart") and self.source.kind == "board" and self.clock() - when > TIMELY:
             self.tell(CAME_LATE)
         else:
             self.guarded(getattr(self, name))
@@ -155,7 +167,7 @@ class Stage:
         if max(low - x, x - high) > high - low:
             self._halt()
             self._wants_to_run = False
-            self._lost = f"The handle left the picture, to {1e3 * x:.3g} mm: the loop is unstable. Run begins anew"
+            self._lost = f"The loop is unstable: the handle left the picture (x = {1e3 * x:.3g} mm). Press Start again"
 
     def guarded(self, work, *given, **values):
         """Do work; what it raises is told, and anything but a refusal stops what moves."""
@@ -181,6 +193,22 @@ class Stage:
         self._wants_to_run = self.source.kind == "simulated"
         self._lost = ""
         self.motion.start()
+        if self._wants_to_run:  # a simulated hand begins where the handle does
+            self.motion.hold(True)
+            self.caught = self.source.place
+
+    def restart(self):
+        """Begin again at the first state of the scene; a board's motor that is off stays off."""
+        if self.source.kind == "board" and not (self.motion.running and self.source.motor):
+            raise PaddleError(MOTOR_OFF)
+        self.start()
+
+    def slow(self):
+        """Begin or end slow motion."""
+        if self.source.kind == "board":
+            raise PaddleError("A board runs in real time, so slow motion needs a SimulatedPaddle")
+        usual = self._speed if self._speed != SLOW else 1.0
+        self.motion.pass_at(SLOW if self.motion.speed != SLOW else usual)
 
     def resume(self):
         if self._lost:
@@ -232,8 +260,8 @@ class Stage:
         if motion.replaying:
             said = ["Replaying a record"]
         elif motion.running:
-            x, F = motion.traces.recent()
-            said = [source.waits or f"{'Motor on' if board else 'Running'}, {contact_words(F[-len(F) // 4 :])}"]
+            x, F, contact = motion.traces.recent()
+            said = [source.waits or f"{'Motor on' if board else self._pace_words()}{contact_words(contact[-len(x) // 4 :])}"]
             said += [chatter_words(x, F, source.period), *(NOTICED[name] for name in motion.noticed())]
             said += ["" if board else late_words(motion.pace.behind(self.clock()))]
             said += ["" if motion.held else "The handle is let go"]
@@ -245,6 +273,9 @@ class Stage:
         said += [records if motion.recording else "", self.note]
         return " ".join(f"{sentence.rstrip('.')}." for sentence in said if sentence)
 
+    def _pace_words(self):
+        return "Running" if self.motion.speed == 1 else f"Running at {self.motion.speed:g} times real time"
+
     def frame(self, rows, wanted):
         """Return the frame that is due, or None: a picture that rests is shown now and then."""
         now = self.clock()
@@ -255,15 +286,22 @@ class Stage:
             self._next_look = now + LOOK
             self._status, before = self.words(), self._status
             status = self._status if self._status != before else ""
-        given = {} if rows is None else {"rows": rows}
-        return Frame(self.motion.time, picture=self._drawn(wanted), status=status, flags=self._frame_flags(wanted), **given)
+        given = {} if rows is None else {"rows": self._without_hidden(rows)}
+        return Frame(self.motion.time, picture=self.drawn(wanted), status=status, flags=self._frame_flags(wanted), **given)
+
+    def _without_hidden(self, rows):
+        """Return rows that do not tell what is hidden."""
+        for k, name in enumerate((*COLUMNS, *self.motion.watched)):
+            if name in self.hidden:
+                rows[:, k] = math.nan
+        return rows
 
     def last_frame(self, words):
         """Return a frame for a page to which no more will come for now."""
         self.look()
         self._status = ""
         with suppress(Exception):
-            return Frame(self.motion.time, picture=self._drawn(None), status=words, flags=self.flags())
+            return Frame(self.motion.time, picture=self.drawn(None), status=words, flags=self.flags())
         return Frame(0.0, status=words, flags=dict.fromkeys(("running", "recording", "replaying", "held", "motor"), False))
 
     def look(self):
@@ -274,17 +312,17 @@ class Stage:
         """Return a frame's flags."""
         flags = {name: getattr(self.motion, name) for name in ("running", "recording", "replaying", "held")}
         values = self.values
-        flags |= {"motor": self.source.motor, "recorded": self.motion.has_record}
+        flags |= {"motor": self.source.motor, "recorded": self.motion.has_record, "speed": self.motion.speed}
         return {**flags, "values": {span.name: values[span.name] for span in self.spans}}
 
     def _frame_flags(self, wanted):
         """Return the flags, and where a hand begins to lead: where it means to be, or where a handle is that was let go."""
         return {**self.flags(), "wanted": wanted if self.motion.held else self.motion.place}
 
-    def _drawn(self, wanted):
+    def drawn(self, wanted):
         """Return the picture; one that cannot be drawn is told, and the scene goes on without it."""
         try:
-            hidden = {} if self._show_force else {"F": math.nan, "intent": math.nan}
+            hidden = dict.fromkeys(self.hidden & {"F", "intent"}, math.nan)
             return self.picture.draw({**self.motion.values(wanted), **hidden})
         except Exception as problem:
             self.tell(f"The picture cannot be drawn: {type(problem).__name__}: {problem}")

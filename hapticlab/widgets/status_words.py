@@ -16,6 +16,8 @@ SUSTAINED = 0.5
 LED = 4.0
 #: what was dropped of a second of the clock is told from here on, and from here on with what to do [s]
 LATE, MUCH = 0.02, 0.3
+#: a contact that begins or ends so often within the recent quarter of a second comes and goes
+CHANGES = 3
 
 
 def chatter_words(x, F, T):
@@ -81,6 +83,16 @@ NOTICED = {
 MISSED = "An event was left unlocated: bodies may be inside each other, and a shorter T helps"
 
 
-def contact_words(F):
-    """Say whether the environment pushes, from recent forces [N]."""
-    return "in contact" if np.any(F) else "nothing touched"
+def contact_words(contact):
+    """Say whether something is touched, from recent samples of 1 or 0; nothing in a scene where nothing can be.
+
+    Examples
+    --------
+    >>> contact_words(np.ones(9)), contact_words(np.array([1.0, 0, 0, 1, 1, 0])), contact_words(np.full(9, np.nan))
+    (', in contact', ', in and out of contact', '')
+    """
+    if not len(contact) or np.isnan(contact[-1]):
+        return ""
+    if np.count_nonzero(np.diff(contact)) >= CHANGES:
+        return ", in and out of contact"
+    return ", in contact" if contact[-1] else ", not in contact"

@@ -12,6 +12,11 @@ RECENT = 1.0
 LARGEST = float(np.finfo(np.float32).max)
 
 
+def rows_apart(T):
+    """Return the time between two rows of a frame [s], for a sample every T [s]."""
+    return T * max(1, int(np.ceil(THINNED / T - 1e-9)))
+
+
 class Traces:
     """The rows of frames.
 
@@ -22,18 +27,20 @@ class Traces:
     ----------
     T : float
         Time between two samples [s].
+    watched : sequence of str
+        Channels that have a column after those of every scene.
 
     Examples
     --------
     >>> traces = Traces(1e-3)
     >>> t, x = np.arange(4) * 1e-3, np.array([0.0, 0.002, 0.0, -0.001])
-    >>> traces.add({"t": t, "x": x, "F": np.array([0.0, 0.2, 0.0, 0.0])})[:, 3].tolist()
+    >>> traces.add({"t": t, "x": x, "F": np.array([0.0, 0.2, 0.0, 0.0])})[::2, 3].tolist()
     [0.0, 0.00039999998989515007]
     """
 
-    def __init__(self, T):
-        self.T = T
-        self._step = max(1, int(np.ceil(THINNED / T - 1e-9)))
+    def __init__(self, T, watched=()):
+        self.T, self._watched = T, tuple(watched)
+        self._step = round(rows_apart(T) / T)
         self._energy, self._last, self._count = 0.0, None, 0
         self._recent, self._length = deque(), 0
 
@@ -42,21 +49,24 @@ class Traces:
         x, F = samples["x"], samples["F"]
         energy = self._drawn(samples)
         first = -self._count % self._step
-        rows = np.full((len(range(first, len(x), self._step)), len(COLUMNS)), np.nan, np.float32)
-        for k, column in enumerate((samples["t"], x, F, energy, samples.get("intent", np.nan))):
-            rows[:, k] = np.clip(column[first :: self._step], -LARGEST, LARGEST) if np.ndim(column) else column
+        known = {"x_true": x, "F_applied": F, **samples, "E": energy}
+        names = (*COLUMNS, *self._watched)
+        rows = np.full((len(range(first, len(x), self._step)), len(names)), np.nan, np.float32)
+        for k, column in enumerate(known.get(name) for name in names):
+            if column is not None:
+                rows[:, k] = np.clip(column[first :: self._step], -LARGEST, LARGEST)
         self._count += len(x)
-        self._keep(x, F)
+        self._keep(x, F, samples.get("contact", np.full(len(x), np.nan)))
         return rows
 
     def recent(self):
-        """Return x [m] and F [N] of the last second."""
+        """Return x [m], F [N] and the contact, 1 or 0 or nan, of the last second."""
         if not self._recent:
-            return np.zeros(0), np.zeros(0)
+            return np.zeros(0), np.zeros(0), np.zeros(0)
         return tuple(np.concatenate(part) for part in zip(*self._recent, strict=True))
 
-    def _keep(self, x, F):
-        self._recent.append((x, F))
+    def _keep(self, x, F, contact):
+        self._recent.append((x, F, contact))
         self._length += len(x)
         while self._length - len(self._recent[0][0]) >= RECENT / self.T:
             self._length -= len(self._recent.popleft()[0])

@@ -63,6 +63,11 @@ class Replay:
     def done(self):
         return self._shown >= len(self._columns["t"])
 
+    def pass_at(self, speed, now):
+        """Play on at another speed."""
+        self._begun = now - (now - self._begun) * self._speed / speed
+        self._speed = speed
+
     def take(self, now):
         """Return the samples since the last look, or None."""
         t = self._columns["t"]

@@ -187,6 +187,19 @@ def grab(page, selector):
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
+def see(page, selector):
+    """Scroll to a live view, and again where JupyterLab scrolls back to the cell that ran last: nothing runs out of sight."""
+    page.wait_for_function(
+        """(selector) => {
+            const stage = document.querySelector(selector)
+            stage.scrollIntoView({ block: "center" })
+            return stage.closest(".hl-live").querySelector(".hl-run").ariaDisabled === "false"
+        }""",
+        arg=selector,
+        polling=200,
+    )
+
+
 def command(page, name, **given):
     """Do what an entry of JupyterLab's menus does."""
     page.evaluate("([name, given]) => window.jupyterapp.commands.execute(name, given)", [name, given])

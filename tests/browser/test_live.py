@@ -1,6 +1,7 @@
 """A scripted student at the live view: JupyterLab and Chromium as they are, the kernel's answer is what counts."""
 
 import pytest
+from axe import findings
 from lab import ask, command, eventually, grab, picture, until
 
 pytestmark = pytest.mark.wide  # the scripts and the silent view beside it always run
@@ -10,6 +11,13 @@ import hapticlab as hl
 paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 view = hl.live(paddle, hl.wall()(k=300, x_o=0.01))
 """
+TALL = 'from IPython.display import HTML; HTML(\'<div style="height: 3000px" id="below">the cell below</div>\')'
+# Which controls are grey, and which of those the keyboard does not reach.
+GREY = """() => {
+  const controls = [...document.querySelectorAll(".hl-buttons button:not(.hl-zoom, .hl-sound), .hl-slider input")]
+  const grey = controls.filter((each) => each.ariaDisabled === "true")
+  return [grey.length === controls.length, grey.filter((each) => (each.focus(), document.activeElement !== each)).length]
+}"""
 STAGE, STATUS = "canvas.hl-stage", ".hl-status"
 # Where the handle is, F, and E as the view says them in words.
 NUMBERS = "() => document.querySelector('.hl-readout').textContent.match(/-?[0-9.]+/g).map(Number)"
@@ -22,7 +30,7 @@ CONTRAST = """() => {
   const rgb = (colour) => colour.match(/[0-9.]+/g).map(Number)
   const paper = light(rgb(getComputedStyle(document.querySelector(".hl-live")).backgroundColor))
   const found = {}
-  for (const name of ["hl-status", "hl-readout", "hl-help", "hl-limits", "hl-unit"]) {
+  for (const name of ["hl-status", "hl-readout", "hl-number", "hl-hint", "hl-energy", "hl-help", "hl-limits", "hl-unit"]) {
     const ink = light(rgb(getComputedStyle(document.querySelector("." + name)).color))
     found[name] = (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05)
   }
@@ -32,7 +40,7 @@ CONTRAST = """() => {
 
 @pytest.fixture(scope="module")
 def page(lab):
-    page = lab.open("student", BEGIN, "view", "'the cell below'")
+    page = lab.open("student", BEGIN, "view", TALL)
     page.wait_for_selector(STAGE)
     until(page, STATUS, "Running")
     yield page
@@ -85,7 +93,15 @@ def test_a_number_is_taken_as_it_was_typed(page):
         entry.fill(typed)
         entry.press("Enter")
         eventually(page, "print(view.values['k'])", f"{value}")
-    assert "“1,000” is no number: k stays 1234.57 N/m" in words.text_content()
+    assert words.text_content() == "“1,000” is not a number; k stays at 1234.57 N/m"
+    for absurd in ("abc", "1e9", "-1e9"):
+        entry.fill(absurd)
+        entry.press("Enter")
+        assert "k stays at 1234.57 N/m" in words.text_content() and entry.get_attribute("aria-invalid") == "true"
+    assert words.text_content().startswith("-1000000000 N/m is more than 100 times the end of the slider")
+    entry.fill("1234,5678")
+    entry.press("Enter")
+    assert entry.get_attribute("aria-invalid") == "false" and "stays" not in words.text_content()
     entry.blur()
     entry.focus()
     entry.press("Enter")  # nothing was typed: what is shown rounded is not written back
@@ -137,7 +153,7 @@ def test_keys_move_the_hand_and_leave_the_notebook_alone(page):
         page.keyboard.press(key)  # in JupyterLab: delete, cut, insert a cell, restart the kernel
     assert page.locator(".jp-Cell").count() == 3
     page.keyboard.press("l")
-    until(page, ".hl-hold", "Take the handle")
+    until(page, ".hl-hold", "Take hold")
     page.keyboard.press("ArrowRight")
     until(page, ".hl-hold", "Let go")
 
@@ -155,10 +171,49 @@ def test_pause_record_replay_and_save_by_keyboard(page):
     until(page, ".hl-record", "● Record")
     assert ask(page, "print(view.log is not None)") == "True"
     page.keyboard.press("y")
-    until(page, ".hl-replay", "Stop replay")
+    until(page, ".hl-replay", "Stop")
     until(page, ".hl-replay", "Replay")
     page.get_by_role("button", name="Save", exact=True).click()
     until(page, STATUS, "Saved")
+
+
+def test_it_starts_again_and_slows_down_and_zooms_by_keyboard(page):
+    page.locator(STAGE).focus()
+    eventually(page, "print(view._session.motion.time > 1)", "True")
+    page.keyboard.press("a")
+    eventually(page, "print(view._session.motion.time < 1)", "True")
+    until(page, STATUS, "Running")
+    page.keyboard.press("m")
+    until(page, STATUS, "Running at 0.1 times real time")
+    page.keyboard.press("z")
+    assert page.evaluate("() => ['slow', 'zoom', 'sound'].map((name) => document.querySelector('.hl-' + name).ariaPressed)") == [
+        "true", "true", "false",
+    ]  # fmt: skip
+    picture(page, "live-4-zoom-in-slow-motion")
+    page.keyboard.press("z")
+    page.keyboard.press("m")
+    page.wait_for_function("() => document.querySelector('.hl-slow').ariaPressed === 'false'")
+
+
+def test_who_listens_is_told_the_details_on_a_key(page):
+    page.locator(STAGE).focus()
+    page.keyboard.press("d")
+    said = page.locator(".hl-spoken").text_content()
+    assert "x is" in said and "F is" in said and "on the environment" in said and said.startswith("Running")
+    assert page.locator(".hl-live > .hl-unseen").first.text_content().startswith("Live view of zoh wall.")
+
+
+def test_the_view_fits_a_laptop_and_nobody_is_left_out(page):
+    assert page.locator(".hl-live").bounding_box()["height"] <= 620
+    assert findings(page, ".hl-live") == []
+
+
+def test_nothing_runs_for_a_view_off_the_screen(page):
+    page.locator("#below").evaluate("(below) => below.scrollIntoView({ block: 'end' })")
+    eventually(page, "print(view._session.on_view, view._session.motion.running)", "False False")
+    page.locator(STAGE).scroll_into_view_if_needed()
+    eventually(page, "print(view._session.on_view, view._session.motion.running)", "True True")
+    until(page, STATUS, "Running")
 
 
 def test_words_stand_out_in_both_themes(page):
@@ -179,3 +234,14 @@ def test_it_stops_with_its_last_view_and_when_its_page_is_left(page):
     page.wait_for_selector(STAGE, state="detached")
     ask(page, "view._session._thread and view._session._thread.join(5)")
     assert ask(page, "print(view._session.on_view, view._session.motion.running, view._session._thread)") == "False False None"
+
+
+def test_a_kernel_that_was_restarted_is_told_and_nothing_can_be_pressed(lab):
+    page = lab.open("restarted", BEGIN, "view")
+    until(page, STATUS, "Running")
+    page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.restart()")
+    until(page, STATUS, "kernel")
+    assert "Running" not in page.locator(STATUS).text_content()
+    assert page.evaluate(GREY) == [True, 0]
+    picture(page, "live-5-restarted")
+    page.close()

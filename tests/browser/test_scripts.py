@@ -2,21 +2,15 @@
 
 import json
 
+import numpy as np
 import pytest
-from lab import REPOSITORY
-
-from hapticlab.widgets.browser_view import SCRIPTS
-
-FOLDER = REPOSITORY / "hapticlab" / "widgets" / "browser"
-PARTS = ("Playback", "Bins", "Scale", "between", "decode", "niceStep", "onDark", "tidy", "shown", "number", "unitWords")
+from scripts import add_scripts
 
 
 @pytest.fixture(scope="module")
 def page(browser):
-    scripts = (FOLDER / name for name in SCRIPTS)
-    source = "\n".join(script.read_text("utf-8") for script in scripts).replace("export default { render }", "")
     page = browser.new_page()
-    page.add_script_tag(content=f"(() => {{ {source}\n window.parts = {{ {', '.join(PARTS)} }} }})()")
+    add_scripts(page)
     yield page
     page.close()
 
@@ -62,17 +56,35 @@ def test_a_column_keeps_what_was_least_and_greatest(page):
             const bins = new parts.Bins(100, 0.01, 2)
             for (const [t, value] of [[0.501, 1], [0.503, -4], [0.506, 7], [0.509, 2]]) bins.add(t, 1, value)
             const slot = bins.slot(1, 50)
-            return [[bins.first, bins.low, bins.high, bins.latest].map((kept) => kept[slot]), bins.range([1], 50, 90)]
+            return [[bins.first, bins.low, bins.high, bins.latest].map((kept) => kept[slot]), bins.span(1, 50, 90)]
         }"""
     )
-    assert column == [1, -4, 7, 2] and drawn == [-4, 7]
+    assert column == [1, -4, 7, 2] and drawn == {"low": -4, "high": 7}
+
+
+@pytest.mark.parametrize(
+    ("frequency", "noise", "turns"), [(30, 0.0, range(5, 7)), (2, 0.0, range(2)), (2, 0.02, range(2)), (0, 0.0, range(1))]
+)
+def test_a_signal_turns_round_as_often_as_it_swings_and_not_by_its_noise(page, frequency, noise, turns):
+    """Columns of 8 ms over 100 ms: a sine has two turns a cycle."""
+    t = np.arange(100) * 1e-3 + 0.3
+    x = np.sin(2 * np.pi * frequency * t) + noise * np.random.default_rng(3).uniform(-1, 1, 100)
+    counted = page.evaluate(
+        """([t, x, size]) => {
+            const bins = new parts.Bins(100, 0.008, 1)
+            t.forEach((time, k) => bins.add(time, 0, x[k]))
+            return bins.turns(0, 0, 99, size)
+        }""",
+        [t.tolist(), x.tolist(), 0.4 * float(np.ptp(x)) + 1e-9],
+    )
+    assert counted in turns
 
 
 def test_an_axis_grows_at_once_and_shrinks_late(page):
     axes = page.evaluate(
         """() => {
-            const scale = new parts.Scale(), found = []
-            for (const high of [0.9, 1.3, 5.2, 3.0, 1.0]) found.push([scale.reach(0, high), scale.low, scale.high])
+            const scale = new parts.Scale(0.1), found = []
+            for (const high of [0.9, 1.3, 5.2, 3.0, 1.0]) found.push([scale.reach(0, high, 2.5), scale.low, scale.high])
             return found
         }"""
     )
@@ -109,4 +121,3 @@ def test_a_number_may_have_a_comma_but_not_two_meanings(page):
     assert page.evaluate("(typed) => typed.map(parts.number).map((x) => (isNaN(x) ? null : x))", typed) == [
         12.5, -0.5, 1000, 0.005, None, None, None, None, None,
     ]  # fmt: skip
-    assert page.evaluate("() => ['N*s/m', '1', 'm'].map(parts.unitWords)") == ["N s/m", "", "m"]

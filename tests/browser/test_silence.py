@@ -1,16 +1,21 @@
 """What the view shows while the kernel says nothing, by a clock that the test turns."""
 
 import pytest
-from lab import REPOSITORY
+from scripts import add_scripts
 
-from hapticlab.widgets.browser_view import SCRIPTS
+from hapticlab.widgets.frame import COLUMNS
 from hapticlab.widgets.session import PRESSES
 
 ABOUT = {
     "title": "a wall", "kind": "board", "box": [-0.03, 0.03, -0.01, 0.01], "x_range": [-0.03, 0.03], "along": [1, 0],
-    "help": "", "speed": 1, "seconds": 4, "presses": list(PRESSES), "columns": ["t", "x", "F", "E", "intent"],
-    "parameters": [{"name": "k", "unit": "N/m", "value": 300, "low": 0, "high": 900, "limit_words": "k >= 0"}],
-    "traces": [{"name": "x", "label": "x", "unit_shown": "mm", "scale": 1000}],
+    "help": "", "overview": "", "speed": 1, "seconds": 4, "presses": list(PRESSES), "columns": list(COLUMNS), "T": 1e-3,
+    "apart": 1e-3, "touches": True, "loop": True,
+    "parameters": [
+        {"name": name, "value": 0.03, "low": 0, "high": 0.09, "limit_words": f"{name} >= 0", "at_start": late}
+        | {"scale": 1e3, "unit_shown": "mm"}
+        for name, late in (("l", False), ("h", True))
+    ],
+    "traces": [{"name": "x", "label": "x", "unit_shown": "mm", "scale": 1000, "open": True}],
 }  # fmt: skip
 # A view whose model notes what is said [kind, value, clock], and a kernel that sends a frame without rows.
 OPEN = """(about) => {
@@ -20,21 +25,21 @@ OPEN = """(about) => {
     get: () => about, on: (event, act) => (receive = act), off: () => {},
     send: (content, callbacks, [data]) => said.push([...new Float64Array(data).slice(1)]),
   }
-  window.view = new parts.View(model, document.body)
+  window.view = new parts.View(new parts.Kernel(model), document.body)
   window.frame = (content) => receive(content, [new DataView(new Float64Array([performance.now() / 1000, 0, 0]).buffer)])
-  window.shown = () => [view.status.textContent, view.buttons.run.textContent.trim(), view.buttons.run.disabled,
-    view.buttons.record.disabled, view.sliders[0].range.disabled]
+  const off = (element) => element.ariaDisabled === "true"
+  const { run, record } = view.controls.buttons
+  window.shown = () => [view.status.textContent, run.textContent.trim(), off(run), off(record), off(view.sliders[0].range)]
 }"""
 
 
 @pytest.fixture
 def page(browser):
-    folder = REPOSITORY / "hapticlab" / "widgets" / "browser"
-    source = "\n".join((folder / script).read_text("utf-8") for script in SCRIPTS).replace("export default { render }", "")
     page = browser.new_page()
     page.clock.install(time=0)
-    page.add_script_tag(content=f"(() => {{ {source}\n window.parts = {{ View, Playback }} }})()")
+    add_scripts(page)
     page.evaluate(OPEN, ABOUT)
+    page.wait_for_function("() => view.source.seen", polling=20)
     page.clock.pause_at(1000)
     yield page
     page.close()
@@ -49,27 +54,27 @@ def test_without_a_kernel_nothing_can_be_pressed(page):
     words, button, *off = page.evaluate("shown()")
     assert words == "Waiting for the kernel: this moves in a running notebook only."
     assert "Start motor" in button and off == [True, True, True]
-    page.evaluate("view.press('run')")
+    page.evaluate("view.controls.press('run')")
     assert presses(page) == []
 
 
 def test_a_silent_kernel_is_told_and_only_stop_can_be_pressed(page):
-    on = {"flags": {"running": True, "motor": True}, "status": "Motor on, nothing touched.", "values": {}}
+    on = {"flags": {"running": True, "motor": True}, "status": "Motor on, not in contact.", "values": {}}
     page.evaluate("(on) => frame(on)", on)
-    assert page.evaluate("shown()")[0] == "Motor on, nothing touched."
+    assert page.evaluate("shown()")[0] == "Motor on, not in contact."
     assert page.evaluate("shown()")[2:] == [False, False, False]
     page.clock.run_for(1300)
-    assert page.evaluate("shown()")[0] == "Motor on, nothing touched."
+    assert page.evaluate("shown()")[0] == "Motor on, not in contact."
     page.clock.run_for(2000)
     words, button, *off = page.evaluate("shown()")
-    assert words == "No word from the kernel for 3 s: the motor goes off by itself."
+    assert words == "The kernel has not answered for 3 s. It may be busy with a cell, or gone. The motor switches off by itself."
     assert "Stop motor" in button and off == [False, True, True]
-    page.evaluate("view.press('record'); view.press('run')")
+    page.evaluate("view.controls.press('record'); view.controls.press('run')")
     assert presses(page) == ["pause"]
     page.evaluate("frame({ flags: { running: false }, values: {} })")
     words, button, *off = page.evaluate("shown()")
-    assert words == "Motor on, nothing touched." and off == [False, False, False]  # what the kernel said last
-    page.evaluate("view.press('run')")
+    assert words == "Motor on, not in contact." and off == [False, False, False]  # what the kernel said last
+    page.evaluate("view.controls.press('run')")
     kind, value, clock = page.evaluate("said.at(-1)")
     assert (kind, PRESSES[value]) == (6, "start")
     assert clock == page.evaluate("Date.now() / 1000")  # so that one that waits is known by its age

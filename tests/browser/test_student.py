@@ -4,7 +4,7 @@ import ast
 import shutil
 
 import pytest
-from lab import REPOSITORY, ask, eventually, grab, picture, run_cell, until
+from lab import REPOSITORY, ask, eventually, grab, picture, run_cell, see, until
 
 LAB = "02_virtual_wall"
 ANSWERS = (REPOSITORY / "tests" / "instructor" / LAB / "solution.py").read_text("utf-8")
@@ -22,6 +22,7 @@ def test_a_student_works_through_a_lab(lab):
     shutil.copy(REPOSITORY / "labs" / LAB / f"{LAB}.ipynb", lab.notebooks)
     page = lab.open(LAB)
     page.wait_for_function("() => document.querySelector('.jp-Cell:last-child .jp-OutputArea')?.innerText.includes('02.')")
+    see(page, STAGE)
     page.locator(".hl-record").click()
     until(page, STATUS, "Recording")
     x, y = grab(page, STAGE)

@@ -1,5 +1,7 @@
 """A scene on view: paced by a clock that is told, led by a hand, stopped with its last view. Nothing here sleeps."""
 
+import base64
+import re
 import sys
 import threading
 from xml.etree import ElementTree
@@ -49,7 +51,7 @@ class Stage:
 
     @property
     def rows(self):
-        return np.concatenate([frame.rows for frame in self.frames])
+        return np.concatenate([frame.rows for frame in self.frames if len(frame.rows)])
 
     @property
     def flags(self):
@@ -69,7 +71,7 @@ def test_no_tick_is_lost_and_nothing_drifts(step):
     stage.go(1.0, step)
     elapsed = stage.now - 50.0
     assert abs(stage.session.source.ticks - elapsed / T) <= 1
-    assert np.allclose(np.diff(stage.rows[:, 0]), 2 * T, atol=1e-6)
+    assert np.allclose(np.diff(stage.rows[:, 0]), T, atol=1e-6)
 
 
 def test_a_handle_let_go_that_leaves_is_caught_and_taken_where_it_is():
@@ -87,6 +89,46 @@ def test_slow_motion_is_slow():
     stage = Stage(speed=0.1).open()
     stage.go(1.0)
     assert abs(stage.session.source.ticks - 100) <= 1
+    stage.session.press("slow")  # ends it
+    stage.go(1.0)
+    assert abs(stage.session.source.ticks - 1100) <= 2
+
+
+def test_a_press_slows_time_down_also_that_of_a_replay():
+    stage = Stage().open()
+    stage.session.press("record")
+    stage.go(1.0, pointer=lead)
+    stage.session.press("slow")
+    stage.go(1.0, pointer=lead)
+    assert abs(stage.session.source.ticks - 1100) <= 2
+    assert stage.flags["speed"] == 0.1 and stage.session.status.startswith("Running at 0.1 times real time")
+    assert np.allclose(np.diff(stage.rows[:, 0]), T, atol=1e-6)  # no tick is lost
+    stage.session.press("replay")
+    stage.go(1.0)
+    assert stage.flags["replaying"] and stage.frames[-1].time == pytest.approx(0.1, abs=0.003)
+    stage.session.press("slow")
+    stage.go(0.5)
+    assert stage.frames[-1].time == pytest.approx(0.6, abs=0.02)
+
+
+def test_a_scene_starts_again_from_its_first_state_with_the_values_of_now():
+    """A ball at rest lies on the plate; started again it falls from the height that its slider says now."""
+    scene = hl.library.ball_on_the_paddle()
+    stage = Stage(scene=scene, method="taylor").open()
+    late = {parameter["name"]: parameter["at_start"] for parameter in stage.session.description()["parameters"]}
+    assert late["h"] and sum(late.values()) == 1
+    stage.go(2.0, pointer=lambda now: 0.01)
+    column = stage.session.description()["columns"].index("y")
+    stage.session.move("h", 0.05)
+    stage.go(0.2)
+    assert stage.rows[-1, column] < 0.02  # a falling height of the past
+    stage.session.hold(False)
+    stage.go(0.05)
+    stage.session.press("restart")
+    *_, frame = stage.go(2 / 60)
+    assert frame.rows[0, 0] == 0 and frame.rows[0, 1] == pytest.approx(0, abs=1e-5)
+    assert frame.rows[0, column] == pytest.approx(0.05, abs=1e-4)
+    assert frame.flags["held"] and frame.flags["running"] and frame.flags["wanted"] == 0  # the hand begins there too
 
 
 def test_a_computer_that_falls_behind_makes_up_for_little_and_says_so():
@@ -129,7 +171,7 @@ def test_paused_time_stands_still_and_goes_on_where_it_was():
     stage.session.press("resume")
     stage.go(0.5, pointer=lead)
     assert abs(stage.session.source.ticks - ticks - 500) <= 18
-    assert np.allclose(np.diff(stage.rows[:, 0]), 2 * T, atol=1e-6)
+    assert np.allclose(np.diff(stage.rows[:, 0]), T, atol=1e-6)
 
 
 # --- what the hand and the sliders do
@@ -224,6 +266,38 @@ def test_a_hand_is_no_faster_than_a_hand():
 # --- what is said
 
 
+DAMPER = hl.Scene(force=hl.parameters("b", units="N*s/m", values=0.5) * hl.v(hl.n))
+
+
+@pytest.mark.parametrize("scene", [hl.library.pendulum_on_the_handle(), hl.library.mass_spring_damper(), DAMPER])
+def test_nothing_is_said_to_be_touched_where_nothing_can_be(scene):
+    stage = Stage(scene=scene).open()
+    frames = stage.go(0.5, pointer=lead)
+    assert np.abs(stage.rows[:, 2]).max() > 1e-3
+    assert np.isnan(stage.rows[:, 5]).all() and not any("contact" in frame.status for frame in frames)
+
+
+def test_contact_is_where_the_handle_is_inside_and_nowhere_else():
+    stage = Stage(scene=hl.wall()(k=6000, x_o=0.0)).open()  # it chatters
+    frames = stage.go(2.0, pointer=lambda now: 0.004)
+    _, x, F, *_ = stage.rows.T
+    touches = stage.rows[:, 5] == 1
+    assert touches.any() and not touches[x < 0].any() and np.array_equal(touches, (x >= 0) & (F != 0))
+    assert "in and out of contact" in frames[-1].status or "in and out" in stage.session.status
+
+
+def test_what_a_scene_watches_has_a_column_and_a_unit():
+    stage = Stage(scene=hl.library.cart_pole()).open()
+    stage.session.press("record")
+    stage.go(0.5, pointer=lead)
+    about, log = stage.session.description(), stage.session.recorded()
+    shown = {trace["name"]: (trace["unit_shown"], trace["scale"], trace["open"]) for trace in about["traces"]}
+    assert shown["z"] == ("mm", 1e3, True) and shown["theta"] == ("rad", 1.0, False)
+    at = np.round(stage.rows[:, 0] / T).astype(int)
+    at, rows = at[at < len(log)], stage.rows[at < len(log)]
+    assert np.array_equal(rows[:, about["columns"].index("theta")], log.theta[at].astype(np.float32))
+
+
 def test_chatter_is_said_and_a_bounce_is_not():
     t = np.arange(1000) * T
     shaken = 4e-4 * np.sin(2 * np.pi * 41 * t)
@@ -263,7 +337,7 @@ def test_a_handle_that_leaves_the_picture_is_told_and_run_begins_anew():
     stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.02, T=5e-3, hand=hl.Hand("pinch")), hl.wall()(k=3000, x_o=0.005)).open()
     stage.go(3.0, pointer=lambda now: 0.012)
     assert not stage.flags["running"]
-    assert stage.session.status.startswith("Paused. The handle left the picture, to ")
+    assert stage.session.status.startswith("Paused. The loop is unstable: the handle left the picture (x = ")
     low, high = stage.session.picture.reach
     assert high - low < max(low - stage.session.motion.place, stage.session.motion.place - high) < 10
     stage.session.move("k", 100)
@@ -366,9 +440,19 @@ def test_without_any_widgets_it_is_text_that_says_what_to_install(monkeypatch):
     for missing in ("anywidget", "ipywidgets"):
         monkeypatch.setitem(sys.modules, missing, None)
     _canvas.cache_clear()
-    shown = hl.live(PADDLE, WALL)._repr_mimebundle_()
-    assert list(shown) == ["text/plain"]
-    assert "hapticlab[notebook]" in shown["text/plain"]
+    shown, _ = hl.live(PADDLE, WALL)._repr_mimebundle_()
+    assert list(shown) == ["text/plain", "text/html"]
+    assert all("hapticlab[notebook]" in text for text in shown.values())
+    image = re.search(r'<img alt="zoh wall: [^"]+" width="640" src="data:image/svg\+xml;base64,([^"]+)">', shown["text/html"])
+    drawn = ElementTree.fromstring(base64.b64decode(image[1]))
+    assert {"handle", "x_o"} <= {each.text for each in drawn.iter() if each.tag.endswith("text")}
+
+
+def test_plain_widgets_are_taken_where_they_are_asked_for():
+    pytest.importorskip("ipywidgets")
+    front = hl.live(PADDLE, WALL, plain=True)
+    shown, _ = front._repr_mimebundle_()
+    assert type(front._front).__name__ == "VBox" and "still picture" in shown["text/html"]
 
 
 def test_silence_and_the_last_view_stop_it_and_a_word_goes_on():
@@ -669,7 +753,9 @@ def test_a_view_for_an_experiment_tells_no_force():
     for show, names in ((True, ["x", "F", "E"]), (False, ["x"])):
         stage = Stage(show_force=show).open()
         stage.go(0.5, pointer=lambda now: 0.02)
-        assert stage.rows[-1, 2] > 0.5  # N: the wall pushes
+        assert (stage.rows[-1, 2] > 0.5) is np.bool_(show)  # N: the wall pushes, and the rows do not tell
+        assert np.isnan(stage.rows[:, [2, 3, 7]]).all() is np.bool_(not show)
+        assert stage.session.description()["loop"] is show
         assert [trace["name"] for trace in stage.session.description()["traces"]] == names
         assert ("force" in [kind for kind, *_ in stage.frames[-1].picture]) is show
 

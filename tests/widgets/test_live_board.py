@@ -71,6 +71,23 @@ def test_the_motor_goes_on_by_a_press_and_by_nothing_else(board):
     assert not stage.frames[-1].flags["motor"]
 
 
+def test_a_restart_leaves_a_motor_off_that_is_off(board):
+    stage = Stage(board).press("restart").go(0.2)
+    assert not stage.is_running and "The motor is off. Press Start" in stage.session.status
+    stage.press("start").go(0.3)
+    before = stage.session.motion.time
+    stage.session.press("restart", TIMELY + 0.1)  # it waited: the hand may have left
+    stage.go(0.1)
+    assert stage.is_running and stage.session.motion.time > before and CAME_LATE in stage.session.status
+    stage.press("restart").go(0.1)
+    assert stage.is_running and stage.session.motion.time < 0.2
+    stage.press("pause", "restart").go(0.1)
+    assert not stage.is_running
+    stage.press("start").go(0.1)
+    stage.press("slow").go(0.1)
+    assert stage.session.motion.speed == 1 and "runs in real time" in stage.session.status
+
+
 @pytest.mark.parametrize("how", ["gone", "silent", "close", "sink", "error"])
 def test_the_motor_goes_off_with_whoever_looks(board, how, monkeypatch):
     stage = Stage(board).press("start").go(0.2)

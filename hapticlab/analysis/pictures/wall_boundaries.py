@@ -45,7 +45,7 @@ def boundaries(scene):
     lengths = [sp.Symbol(type(q).__name__, real=True) for q in scene.coordinates if type(q).unit == "m"]
     known = {type(q).__name__ for q in scene.coordinates} | set(scene.parameters) | {"t", "T"}
     found = {}
-    for depth in _depths([scene.force, *_sides(scene.eom)], scene.eom):
+    for depth in depths(scene):
         for mover in (HANDLE, *lengths):
             place, side = _place(depth, mover, lengths)
             if side and {s.name for s in place.free_symbols} <= known:
@@ -58,17 +58,17 @@ def _sides(eom):
     return [part for entry in eom for part in (entry.written if hasattr(entry, "written") else entry.args)]
 
 
-def _depths(written, eom):
-    """Return expressions that are positive where something acts."""
+def depths(scene):
+    """Return expressions, in plain symbols, that are positive where a case, a maximum or a contact of a scene acts."""
     found = []
-    for expr in written:
+    for expr in [scene.force, *_sides(scene.eom)]:
         for cases in expr.atoms(sp.Piecewise):
             for value, condition in cases.args[:-1]:
                 if value != 0:
                     found += [rel.gts - rel.lts for rel in condition.atoms(sp.Ge, sp.Gt, sp.Le, sp.Lt)]
         for most in expr.atoms(sp.Max):
             found += [part for part in most.args if part != 0] if sp.S.Zero in most.args else []
-    gaps = [c.gap for entry in eom for c in getattr(entry, "contacts", ()) if isinstance(c, Contact)]
+    gaps = [c.gap for entry in scene.eom for c in getattr(entry, "contacts", ()) if isinstance(c, Contact)]
     return [plain_symbols(depth) for depth in (*found, *(-gap for gap in gaps))]
 
 

@@ -150,7 +150,7 @@ def linear_trend(x, F):
 
     It is 0 too where it does not exceed its error. Over many swings it shows what rounding hides from sample to sample.
     """
-    if not np.all(F != 0):
+    if len(F) < 4 or not np.all(F != 0):
         return 0.0
     terms = np.c_[x[2:], x[1:-1], x[:-2]]
     terms, force = terms - terms.mean(axis=0), F[2:] - F[2:].mean()

@@ -1,23 +1,5 @@
 // The moving picture: a display list in metres, drawn on a canvas.
 
-// A frame's bytes: dispatch [s], scene time [s], number of rows as float64; the rows; then every point of the picture.
-const COLUMNS = 5 // t, x, F, E, intent
-
-function decode(buffer, shape) {
-  const [sent, time, count] = new Float64Array(buffer.slice(0, 24))
-  const numbers = new Float32Array(buffer.slice(24))
-  const rows = numbers.subarray(0, count * COLUMNS)
-  return { sent, time, rows, points: numbers.subarray(count * COLUMNS), shape }
-}
-
-// A point of what is shown: between this frame and the next, if both have the same items.
-function between(frame, next, part) {
-  if (!next || !part || next.points.length !== frame.points.length) return frame.points
-  const a = frame.points
-  const b = next.points
-  return a.map((value, i) => value + part * (b[i] - value))
-}
-
 class Picture {
   constructor(canvas, about) {
     this.canvas = canvas

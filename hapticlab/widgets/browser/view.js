@@ -1,45 +1,43 @@
-// The live view: what it shows, and what a pointer, a key, a slider or a button says to the kernel.
+// The live view: what it shows of plain data, and what a pointer, a key, a slider or a button says to where that comes from.
+// Who prefers reduced motion sees the picture follow the hand, for that motion is their own; traces, loop and numbers, which
+// move by themselves, change twice a second.
 
-const KIND = { ready: 0, alive: 1, gone: 2, intend: 3, hold: 4, move: 5, press: 6 }
-const HEARTBEAT = 400 // [ms]
-const PAGE = Math.floor(Math.random() * 2 ** 48) // differs after the page was loaded anew
 const TRACED = 25 // [ms] between two pictures of the traces: they scroll, and wait for nobody
+const LOOPED = 100 // [ms] between two pictures of the loop
+const CALM = 500 // [ms] between two of either where motion is reduced, and of a zoom that stands still
 const READOUT = 250 // [ms] between two readouts in text
 const SPOKEN = 2000 // [ms] between two sentences for who listens
-const WORDLESS = 1500 // [ms] without a frame: one comes every 250 ms at least
-const HIDDEN = 3000 // [ms] until a tab that nobody sees switches a board's motor off
+const ASKED = 8000 // [ms] that details which were asked for are not talked over
+const HIDDEN = 3000 // [ms] until a board's motor goes off whose view nobody sees
+const LONG = 90 // letters
+const FOLDED = 3 // sliders that are not folded away
+const NARROW = 560 // [px]: the loop goes below the traces
 const WAITING = "Waiting for the kernel: this moves in a running notebook only."
 
-function render({ model, el }) {
-  const view = new View(model, el)
-  return () => view.close()
-}
-
 class View {
-  constructor(model, el) {
-    this.model = model
-    this.number = Math.floor(Math.random() * 2 ** 48)
-    this.about = model.get("about")
+  constructor(source, el) {
+    this.source = source
+    this.about = source.about
+    this.id = `hl-${Math.floor(Math.random() * 2 ** 48)}`
     this.playback = new Playback()
+    this.samples = new Samples(this.about.columns)
     this.flags = {}
-    this.words = "" // of the kernel, on what goes on
-    this.silent = true // no word from the kernel, now
+    this.words = "" // of the source, on what goes on
+    this.silent = true // no word from the source, now
     this.shape = []
     this.cleanups = []
+    this.sound = new Sound(this.samples, this.about.apart)
     this.build(el)
     this.picture = new Picture(this.stage, this.about)
-    this.traces = new Traces(this.graph, this.about.traces, this.about.seconds)
-    this.traces.notes.F = "(on the environment; the motor applies -F)"
-    if (this.about.kind === "simulated") this.traces.notes.x = "(dashed: where the hand means to be)"
-    this.listen(model, "msg:custom", (content, buffers) => this.receive(content, buffers))
-    this.listenToPage()
+    this.traces = new Traces(this.graph, this.about, this.samples)
+    this.loop = this.about.loop ? new Loop(this.ring, this.about, this.samples) : null
+    this.traces.notes = { x: this.about.kind === "simulated" ? "dashed: target of the hand" : "", F: "on the environment; the motor applies -F" }
     const observer = new ResizeObserver(() => this.resize())
     observer.observe(this.root)
     this.cleanups.push(() => observer.disconnect())
     this.resize()
-    this.tell("ready", PAGE)
-    const heart = setInterval(() => this.beat(), HEARTBEAT)
-    this.cleanups.push(() => clearInterval(heart))
+    this.source.open(this)
+    this.watch()
   }
 
   // --- what it consists of
@@ -47,25 +45,28 @@ class View {
   build(el) {
     const about = this.about
     this.root = make("section", { class: "hl-live", "aria-label": about.title })
+    const overview = make("p", { class: "hl-unseen" }, [about.overview])
+    this.controls = new Controls(about, (name) => this.press(name))
     this.stage = make("canvas", { class: "hl-stage", ...this.stageRole() })
-    this.graph = make("canvas", { class: "hl-graph", role: "img", "aria-label": this.graphWords() })
-    this.readout = make("p", { class: "hl-readout", id: `hl-${this.number}-readout` })
-    this.stage.setAttribute("aria-describedby", this.readout.id)
-    this.status = make("p", { class: "hl-status" })
-    this.spoken = make("p", { class: "hl-spoken", role: "status", "aria-live": "polite" })
-    this.buttons = this.makeButtons()
+    this.numbers = new Numbers(about.traces, (open) => this.traces.show(open))
+    this.status = make("p", { class: "hl-status" }, [WAITING])
+    this.hint = make("p", { class: "hl-hint" })
+    this.spoken = make("p", { class: "hl-unseen hl-spoken", role: "status", "aria-live": "polite" })
+    this.graph = make("canvas", { class: "hl-graph", role: "img", "aria-label": "traces over time; the numbers above give the present values" })
+    this.ring = make("canvas", { class: "hl-ring", role: "img", "aria-label": "loop of force over position; the text below says its energy" })
+    this.energy = make("p", { class: "hl-energy" })
+    const loop = about.loop ? [make("div", { class: "hl-loop" }, [this.ring, this.energy])] : []
+    const graphs = make("div", { class: "hl-graphs" }, [make("div", {}, [this.graph]), ...loop])
     this.sliders = about.parameters.map(
-      (parameter, k) => new Slider(parameter, `hl-${this.number}-${k}`, (value) => this.tell("move", k, value)),
+      (parameter, k) => new Slider(parameter, `${this.id}-${k}`, (value) => this.tell("move", k, value)),
     )
-    const bar = make("div", { class: "hl-buttons", role: "group", "aria-label": "controls" }, Object.values(this.buttons))
-    const sliders = make("div", { class: "hl-sliders", role: "group", "aria-label": "parameters" }, this.sliders.map((s) => s.row))
-    const help = make("p", { class: "hl-help" }, [about.help])
-    this.root.append(bar, this.stage, this.readout, this.status, this.spoken, sliders, this.graph, help)
+    const said = make("div", { class: "hl-said" }, [this.status, this.hint])
+    this.root.append(overview, this.controls.row, this.stage, this.numbers.row, said, this.spoken, graphs, ...this.parameters(), this.help())
     el.append(this.root)
     // JupyterLab takes keys for its own, d d to delete a cell, unless the very element that has the focus says no.
-    for (const each of this.root.querySelectorAll("[tabindex], input, button")) each.dataset.lmSuppressShortcuts = "true"
+    for (const each of this.root.querySelectorAll("[tabindex], input, button, summary")) each.dataset.lmSuppressShortcuts = "true"
     if (about.kind === "simulated") this.hand = new Hand(this)
-    this.status.textContent = WAITING
+    this.root.addEventListener("keydown", (event) => this.shortcut(event))
     this.showFlags({})
   }
 
@@ -74,114 +75,131 @@ class View {
     return about.kind === "simulated" ? Hand.role(about) : { role: "img", "aria-label": `${about.title}: moving picture` }
   }
 
-  graphWords() {
-    return "traces over time: " + this.about.traces.map((t) => `${t.label} in ${t.unit_shown}`).join(", ") + "; the text above gives the present values"
+  // Up to three sliders, and the others folded.
+  parameters() {
+    const rows = this.sliders.map((slider) => slider.row)
+    const group = (words, some) => make("div", { class: "hl-sliders", role: "group", "aria-label": words }, some)
+    const first = rows.length ? [group("parameters", rows.slice(0, FOLDED))] : []
+    if (rows.length <= FOLDED) return first
+    const more = rows.slice(FOLDED)
+    const names = this.sliders.slice(FOLDED).map((slider) => slider.name).join(", ")
+    return [...first, make("details", { class: "hl-more" }, [make("summary", {}, [`${more.length} more parameters: ${names}`]), group("more parameters", more)])]
   }
 
-  makeButtons() {
-    const buttons = {}
-    for (const [name, key] of [["run", "P"], ["hold", "L"], ["record", "R"], ["save", "S"], ["replay", "Y"]]) {
-      if (name === "hold" && this.about.kind !== "simulated") continue
-      buttons[name] = make("button", { type: "button", class: "hl-" + name, "aria-keyshortcuts": key })
-      buttons[name].addEventListener("click", () => this.press(name))
-    }
-    return buttons
+  help() {
+    const keys = "Keys: P run or pause, A start again, L let go, M slow motion, Z zoom, U sound, R record, S save, Y replay, D details."
+    return make("details", { class: "hl-help" }, [make("summary", {}, ["Help"]), make("p", {}, [this.about.help]), make("p", {}, [keys])])
   }
 
   // --- what a hand says
 
+  tell(what, ...values) {
+    if (what === "intend") this.touched = true
+    this.source.tell(what, ...values)
+  }
+
   press(name) {
     const flags = this.flags
-    if (this.buttons[name].disabled) return
+    const runs = flags.running && !flags.replaying
+    const said = {
+      run: runs ? "pause" : this.about.kind === "board" ? "start" : "resume", again: "restart", slow: "slow",
+      record: flags.recording ? "stop" : "record", save: "save", replay: "replay",
+    }
     if (name === "hold") return flags.held ? this.tell("hold", 0) : this.hand.take(this.hand.x)
-    const words = { run: flags.running && !flags.replaying ? "pause" : this.about.kind === "board" ? "start" : "resume", record: flags.recording ? "stop" : "record" }
-    this.tell("press", this.about.presses.indexOf(words[name] || name), Date.now() / 1000) // one that waited starts no motor
+    if (said[name]) return this.source.press(said[name])
+    if (name === "zoom") this.zoom()
+    else this.sound.toggle()
+    this.showFlags(flags)
+  }
+
+  zoom() {
+    this.traces.zoomed = !this.traces.zoomed
+    this.traces.rebuild()
+    this.tracedAt = 0
+    this.ask()
   }
 
   shortcut(event) {
-    if (event.ctrlKey || event.altKey || event.metaKey || event.target.type === "text") return
-    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key // Caps Lock or not
-    const name = { p: "run", l: "hold", Escape: "hold", r: "record", s: "save", y: "replay" }[key]
-    if (!this.buttons[name] || this.buttons[name].disabled) return
-    if (event.key === "Escape" && !this.flags.held) return
+    if (this.controls.key(event, this.flags.held)) return event.preventDefault()
+    const plain = !event.ctrlKey && !event.altKey && !event.metaKey && event.target.type !== "text"
+    if (!plain || event.key.toLowerCase() !== "d") return
     event.preventDefault()
-    this.press(name)
+    this.spoken.textContent = details(this)
+    this.spokenAt = performance.now() + ASKED
   }
 
-  tell(kind, value = 0, more = 0) {
-    this.model.send({}, undefined, [new Float64Array([this.number, KIND[kind], value, more]).buffer])
-  }
+  // --- who sees it
 
-  listenToPage() {
-    const leave = () => this.tell("gone")
-    const back = (event) => event.persisted && this.tell("ready", PAGE)
-    const hide = () => {
+  // Nothing runs for a view off the screen, or in a tab that is hidden; a board gets 3 s, and then waits for Start.
+  watch() {
+    let on = true
+    const look = () => {
       clearTimeout(this.hiding)
-      if (document.hidden && this.about.kind === "board") this.hiding = setTimeout(() => this.pause(), HIDDEN)
+      const seen = on && !document.hidden
+      this.seen = seen
+      this.hush()
+      if (seen || this.about.kind !== "board") this.source.show(seen)
+      else this.hiding = setTimeout(() => this.source.press("pause"), HIDDEN)
     }
-    document.addEventListener("visibilitychange", hide)
-    window.addEventListener("pagehide", leave)
-    window.addEventListener("pageshow", back)
-    this.root.addEventListener("keydown", (event) => this.shortcut(event))
+    const observer = new IntersectionObserver((entries) => {
+      on = entries[entries.length - 1].isIntersecting
+      look()
+    })
+    observer.observe(this.root)
+    document.addEventListener("visibilitychange", look)
     this.cleanups.push(() => {
       clearTimeout(this.hiding)
-      document.removeEventListener("visibilitychange", hide)
-      window.removeEventListener("pagehide", leave)
-      window.removeEventListener("pageshow", back)
+      observer.disconnect()
+      document.removeEventListener("visibilitychange", look)
     })
   }
 
-  listen(model, event, act) {
-    model.on(event, act)
-    this.cleanups.push(() => model.off(event, act))
+  hush() {
+    this.sound.follow(this.seen && !this.silent && Boolean(this.flags.running || this.flags.replaying))
   }
 
   close() {
     clearTimeout(this.hand?.intending)
-    this.tell("gone")
+    this.source.close()
+    this.sound.close()
     this.closed = true
     for (const clean of this.cleanups) clean()
   }
 
-  pause() {
-    this.tell("press", this.about.presses.indexOf("pause"), Date.now() / 1000)
-  }
+  // --- what the source says
 
-  // --- what the kernel says
-
-  beat() {
-    this.tell("alive", PAGE, Date.now() / 1000)
-    const silence = performance.now() - this.heard
-    if (!(silence > WORDLESS)) return
+  // Nothing comes: what was said of a motion or a motor is no longer known to be true.
+  fallSilent(words) {
     this.silent = true
-    const then = this.about.kind === "board" ? "the motor goes off by itself" : "nothing moves until it answers"
-    this.status.textContent = `No word from the kernel for ${(silence / 1000).toFixed(0)} s: ${then}.`
-    this.speak()
+    this.hint.textContent = ""
+    this.say(words)
     this.showFlags(this.flags)
+    this.speak()
   }
 
-  // A frame came: what it says is true.
-  hear() {
-    this.heard = performance.now()
-    if (this.status.textContent !== this.words) this.status.textContent = this.words
+  // Take news, {shape, flags, values, status, wanted}, and the bytes of a frame.
+  receive(news, bytes) {
+    if (news.shape) this.shape = news.shape
+    if (news.flags) this.showFlags(news.flags)
+    if (news.values) for (const slider of this.sliders) slider.follow(news.values[slider.name])
+    if (news.wanted !== undefined) this.hand?.led(news.wanted)
+    if (news.status) this.words = news.status
+    if (!bytes) return
+    this.say(this.words)
     this.speak()
-    if (!this.silent) return
-    this.silent = false
-    this.showFlags(this.flags)
-  }
-
-  receive(content, buffers) {
-    if (content.shape) this.shape = content.shape
-    if (content.flags) this.showFlags(content.flags)
-    if (content.values) for (const slider of this.sliders) slider.follow(content.values[slider.name])
-    if (content.wanted !== undefined) this.hand?.led(content.wanted)
-    if (content.status) this.words = content.status
-    if (!buffers.length) return
-    this.hear()
-    const bytes = buffers[0]
-    const frame = decode(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength), this.shape)
-    this.playback.push(frame, performance.now() / 1000)
+    if (this.silent) {
+      this.silent = false
+      this.showFlags(this.flags)
+    }
+    this.playback.push(decode(bytes, this.shape, this.samples.width), performance.now() / 1000)
     this.ask()
+  }
+
+  // Show what goes on; long words take the room of the hint.
+  say(words) {
+    if (this.status.textContent === words) return
+    this.status.textContent = this.status.title = words
+    this.root.classList.toggle("hl-long", words.length > LONG)
   }
 
   // Say the status to who listens, when another kind of sentence is there, and not too often.
@@ -194,35 +212,36 @@ class View {
     this.spoken.textContent = words
   }
 
+  // Say at once that something was reached, unless it comes and goes.
+  consequence() {
+    const contact = this.samples.last("contact")
+    if (contact === 1 && this.contact === 0 && performance.now() > (this.leftAt ?? -Infinity) + SPOKEN / 4) {
+      this.spoken.textContent = `Contact reached at x = ${(1000 * this.samples.last("x")).toFixed(1)} mm.`
+      this.spokenAt = performance.now()
+    }
+    if (contact === 0 && this.contact === 1) this.leftAt = performance.now()
+    this.contact = contact
+  }
+
   showFlags(flags) {
     this.flags = flags
-    const board = this.about.kind === "board"
-    const words = {
-      run: flags.running && !flags.replaying ? (board ? ["■", "Stop motor"] : ["❚❚", "Pause"]) : ["▶", board ? "Start motor" : "Run"],
-      hold: ["", flags.held ? "Let go" : "Take the handle"],
-      record: flags.recording ? ["■", "Stop recording"] : ["●", "Record"],
-      save: ["", "Save"],
-      replay: flags.replaying ? ["■", "Stop replay"] : ["", "Replay"],
-    }
-    const stops = board && flags.running // may always be pressed
-    const off = { run: this.silent && !stops, record: flags.replaying, hold: flags.replaying, save: !flags.recorded, replay: !flags.recorded && !flags.replaying }
-    for (const [name, button] of Object.entries(this.buttons)) {
-      const key = button.getAttribute("aria-keyshortcuts")
-      const [glyph, word] = words[name]
-      button.replaceChildren(make("span", { "aria-hidden": "true" }, [glyph && glyph + " "]), word, " ", make("kbd", { "aria-hidden": "true" }, [key]))
-      button.disabled = Boolean(off[name] || (this.silent && name !== "run"))
-    }
-    for (const slider of this.sliders) slider.range.disabled = slider.entry.disabled = this.silent
+    this.controls.show(flags, { silent: this.silent, zoomed: this.traces?.zoomed, sounds: this.sound.on })
+    for (const slider of this.sliders) slider.switchOff(this.silent)
     this.root.classList.toggle("hl-recording", Boolean(flags.recording))
+    this.root.classList.toggle("hl-silent", this.silent)
+    this.hush()
+    if (!this.traces || flags.speed === undefined || flags.speed === this.traces.speed) return
+    this.traces.speed = flags.speed
+    this.traces.rebuild()
   }
 
   // --- drawing
 
   ask() {
-    if (this.asked || this.closed) return
-    this.asked = true
+    if (this.painting || this.closed) return
+    this.painting = true
     requestAnimationFrame(() => {
-      this.asked = false
+      this.painting = false
       this.paint(performance.now() / 1000)
       if (this.playback.waiting) this.ask()
     })
@@ -230,45 +249,67 @@ class View {
 
   paint(now) {
     const { frame, next, part, passed } = this.playback.at(now)
-    for (const each of passed) {
-      if (each.time < this.time - 1e-6) this.traces.clear() // a replay began
-      this.time = each.time
-      this.traces.add(each.rows)
-      if (this.hand && each.rows.length) this.hand.x = each.rows[each.rows.length - COLUMNS + 1]
-    }
+    for (const each of passed) this.take(each)
     if (!frame || this.closed) return
     const theme = this.theme(now)
-    const [, x, F, , intent] = frame.rows.subarray(frame.rows.length - COLUMNS)
-    if (frame.rows.length) this.state = { x, F, intent }
-    this.picture.draw(frame.shape, between(frame, next, part), theme, { ...this.state, running: this.flags.running })
-    if (!(now - this.tracedAt < TRACED / 1000) || !frame.rows.length) {
-      this.tracedAt = now
-      this.traces.draw(part && next ? frame.time + part * (next.time - frame.time) : frame.time, theme)
+    const last = (name) => this.samples.last(name)
+    const state = { F: last("F"), x: last("x"), intent: last("intent"), contact: last("contact") === 1, running: Boolean(this.flags.running) && !this.silent }
+    this.picture.draw(frame.shape, between(frame, next, part), theme, state)
+    const stands = this.traces.zoomed && this.traces.speed >= 0.5 && this.flags.running
+    if (this.due("tracedAt", now, stands ? CALM : TRACED) || !frame.rows.length) {
+      const time = part && next ? frame.time + part * (next.time - frame.time) : frame.time
+      this.traces.draw(stands ? this.traces.steady(time) : time, theme)
     }
-    if (!(now - this.readAt < READOUT / 1000)) this.read(frame, now)
+    if (this.loop && this.due("loopedAt", now, LOOPED)) {
+      this.loop.draw(now, theme)
+      const [much, means] = this.loop.words()
+      this.energy.replaceChildren(make("b", {}, [much]), make("br", {}), means)
+    }
+    if (this.due("readAt", now, READOUT)) this.read()
     this.root.dispatchEvent(new CustomEvent("painted", { detail: frame }))
   }
 
-  // The present values in words, a few times a second.
-  read(frame, now) {
-    const last = frame.rows.subarray(frame.rows.length - COLUMNS)
-    if (!last.length) return
-    this.readAt = now
-    this.readout.textContent = this.about.traces
-      .map((trace, k) => `${trace.label} = ${shown(last[1 + k] * trace.scale)} ${trace.unit_shown}${trace.name === "F" ? pushes(last[2], this.about.along) : ""}`)
-      .concat(`t = ${last[0].toFixed(1)} s`)
-      .join("   ")
+  // Take the rows of a frame that has come due.
+  take(frame) {
+    if (frame.time < this.time - 1e-6) {
+      // the scene began again, or a replay
+      this.samples.clear()
+      this.traces.rebuild()
+      this.loop?.clear()
+    }
+    this.time = frame.time
+    this.samples.add(frame.rows)
+    const count = frame.rows.length / this.samples.width
+    this.traces.add(count)
+    this.sound.play(count, this.traces.speed)
+    if (this.hand && count) this.hand.x = this.samples.last("x")
+    if (count) this.consequence()
+  }
+
+  // Whether what was drawn at a moment [s] is old enough to be drawn again; seldom where motion is reduced.
+  due(what, now, milliseconds) {
+    if (now - this[what] < (calm.matches ? Math.max(CALM, milliseconds) : milliseconds) / 1000) return false
+    this[what] = now
+    return true
+  }
+
+  // The present values in words, and what to do, a few times a second.
+  read() {
+    if (this.samples.count) this.numbers.read(this.samples)
+    this.hint.textContent = hint(this)
   }
 
   // Ink and paper as the notebook's theme has them, looked up twice a second.
   theme(now) {
     if (this.known && now - this.known.at < 0.5) return this.known
     const style = getComputedStyle(this.root)
-    const colour = (name) => style.getPropertyValue(name).trim()
     const paper = components(this.picture.context, style.backgroundColor)
     const dark = paper[0] + paper[1] + paper[2] < 384
-    this.known = { at: now, dark, ink: style.color, paper: style.backgroundColor, quiet: colour(dark ? "--hl-quiet-dark" : "--hl-quiet"), grid: colour(dark ? "--hl-grid-dark" : "--hl-grid") }
     this.root.classList.toggle("hl-dark", dark)
+    this.known = { at: now, dark, ink: style.color, paper: style.backgroundColor }
+    for (const name of ["quiet", "grid", "contact", "band", "given", "taken"]) {
+      this.known[name] = style.getPropertyValue(`--hl-${name}${dark ? "-dark" : ""}`).trim()
+    }
     return this.known
   }
 
@@ -276,23 +317,13 @@ class View {
     const width = Math.floor(this.root.clientWidth) - 2
     if (width < 100 || width === this.width) return
     this.width = width
-    this.picture.resize(width)
-    this.traces.resize(width)
+    const narrow = width < NARROW
+    this.root.classList.toggle("hl-narrow", narrow)
+    this.picture.resize(width, narrow ? 170 : 200)
+    this.traces.resize(this.graph.parentElement.clientWidth, 190)
+    this.loop?.resize(this.ring.parentElement.clientWidth, narrow ? 180 : 152)
     this.ask()
   }
 }
 
-function make(tag, attributes, children = []) {
-  const element = document.createElement(tag)
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value)
-  element.append(...children)
-  return element
-}
-
-// Whose force F is, and where the motor pushes the handle: against it.
-function pushes(force, [x, y]) {
-  const way = x ** 2 > 0.5 ? (force * x > 0 ? "left" : "right") : force * y > 0 ? "down" : "up"
-  return " on the environment" + (Math.abs(force) < 0.005 ? "" : `, the motor pushes ${way}`)
-}
-
-export default { render }
+const calm = window.matchMedia("(prefers-reduced-motion: reduce)")

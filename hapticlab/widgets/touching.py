@@ -1,0 +1,56 @@
+"""Whether the environment of a scene is touched: at a wall, inside a case that acts, in a contact; never by a spring alone."""
+
+import numpy as np
+import sympy as sp
+
+from ..analysis.pictures.plain_formulas import HANDLE
+from ..analysis.pictures.wall_boundaries import depths
+
+#: a body that rests on another is found so far above it, by rounding and by the steps of a method [m]
+CLOSE = 1e-6
+
+
+def touching(scene, watched=()):
+    """Return a function that says at which samples something is touched, or None where the scene has nothing to touch.
+
+    Touched is what has a boundary: the handle or a body is beyond the boundary, and the force acts. A pendulum, a mass or
+    a damper that hangs on the handle has no boundary.
+
+    Parameters
+    ----------
+    scene : Scene
+    watched : collection of str
+        Coordinates whose samples are known.
+
+    Returns
+    -------
+    callable of (samples, parameters) -> array of float, 1 or 0; or None
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> wall, spring = hl.wall()(k=300, x_o=0.01), hl.Scene(force=hl.parameters("k", units="N/m") * hl.x(hl.n))
+    >>> samples = {"x": np.array([0.0, 0.012, 0.012]), "F": np.array([0.0, 0.6, 0.0])}
+    >>> touching(wall)(samples, {"k": 300.0, "x_o": 0.01}).tolist(), touching(spring)
+    ([0.0, 1.0, 0.0], None)
+    """
+    movers = {HANDLE.name, *(name for q in scene.coordinates if (name := type(q).__name__) in watched)}
+    known = movers | set(scene.parameters)
+    found = []
+    for depth in dict.fromkeys(depths(scene)):
+        names = {symbol.name for symbol in depth.free_symbols}
+        if names & movers and names <= known:
+            found.append(depth)
+    if not found:
+        return None
+    symbols = sorted(set().union(*(depth.free_symbols for depth in found)), key=str)
+    names = [symbol.name for symbol in symbols]
+    values = sp.lambdify(symbols, found, "numpy")
+
+    def touched(samples, parameters):
+        known = {**parameters, **samples}
+        with np.errstate(all="ignore"):
+            deepest = np.max(np.broadcast_arrays(samples["x"], *values(*(known[name] for name in names)))[1:], axis=0)
+        return ((deepest >= -CLOSE) & (samples["F"] != 0)).astype(float)
+
+    return touched
