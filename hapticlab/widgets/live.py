@@ -18,8 +18,8 @@ from ..device.simulated.stepping import with_grip
 from ..errors import EngineMissingError, PaddleError
 from ..scene.scene import check_scene
 from .browser_view import front as canvas
-from .plain_view import front as plain_widgets
-from .plain_view import still_picture
+from .plain.plain_view import front as plain_widgets
+from .plain.plain_view import still_picture
 from .session import Session
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ class Motion:
     watched : sequence of str
         Channels that frames carry.
     touching : callable, optional
-        Of samples and parameters: whether the environment is touched, see :func:`~hapticlab.widgets.touching.touching`.
+        Of samples and parameters: whether the environment is touched, see :func:`~hapticlab.analysis.pictures.touching.touching`.
 
     Attributes
     ----------

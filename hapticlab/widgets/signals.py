@@ -2,7 +2,7 @@
 
 from sympy import Symbol, latex
 
-from .plain_letters import plain
+from .plain.plain_letters import plain
 from .spans import shown_unit
 
 #: signals that would tell the force

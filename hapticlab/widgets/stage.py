@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 
+from ..analysis.pictures.touching import touching
 from ..device.board.serial_paddle import is_refusal
 from ..device.live_parameters import named_values
 from ..errors import HapticlabError, PaddleError
@@ -15,7 +16,6 @@ from .signals import HIDING_FORCE, open_traces, signals
 from .sources import help_words, overview_words, source_of
 from .spans import spans
 from .status_words import MISSED, NOTICED, chatter_words, contact_words, late_words
-from .touching import touching
 from .traces import rows_apart
 
 #: pictures a second of a scene that rests

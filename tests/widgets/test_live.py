@@ -718,7 +718,7 @@ def test_what_a_front_end_is_told_once():
 
 def test_plain_widgets_show_and_say_the_same():
     widgets = pytest.importorskip("ipywidgets")
-    from hapticlab.widgets.plain_view import PlainFront
+    from hapticlab.widgets.plain.plain_view import PlainFront
 
     stage = Stage()
     front = PlainFront(widgets, stage.session)
@@ -780,6 +780,6 @@ def test_a_released_drag_lets_go_where_asked_and_a_blind_picture_hides_where_the
     for show_force in (True, False):
         session = Session(paddle, hl.wall()(k=300, x_o=0.01), show_force=show_force, let_go=not show_force, in_thread=False)
         told[show_force] = session.description()["let_go"]
-        shown.append([item[0] for item in session.stage._drawn(0.02)])
+        shown.append([item[0] for item in session.stage.drawn(0.02)])
     assert told == {True: False, False: True}
     assert len(shown[0]) > len(shown[1])

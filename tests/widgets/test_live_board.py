@@ -8,7 +8,7 @@ import pytest
 import hapticlab as hl
 from hapticlab.device.board.streaming import LEAD, LEASH
 from hapticlab.device.link.messages import STATES
-from hapticlab.widgets.plain_view import PlainFront
+from hapticlab.widgets.plain.plain_view import PlainFront
 from hapticlab.widgets.session import GAP, SILENCE, STEADY, Session
 from hapticlab.widgets.stage import CAME_LATE, TIMELY
 

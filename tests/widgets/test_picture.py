@@ -12,7 +12,7 @@ from hapticlab.library.display_list import DisplayList
 from hapticlab.library.entries import CATALOGUE
 from hapticlab.library.parts import primitives
 from hapticlab.widgets.picture import moving_picture
-from hapticlab.widgets.plain_letters import plain
+from hapticlab.widgets.plain.plain_letters import plain
 
 STATE = {"x": 0.012, "F": 1.5, "intent": 0.02}
 

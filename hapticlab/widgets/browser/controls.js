@@ -46,12 +46,12 @@ class Controls {
     const runs = flags.running && !flags.replaying
     const words = {
       run: runs ? (board ? ["■", "Stop motor"] : ["❚❚", "Pause"]) : ["▶", board ? "Start motor" : "Run"],
-      again: ["↺", "Start again"],
+      again: ["", "Start again"],
       hold: ["", flags.held ? "Let go" : "Take hold"],
       slow: ["", "Slow"],
       zoom: ["", "Zoom"],
       sound: ["", "Sound"],
-      record: flags.recording ? ["■", "Stop rec."] : ["●", "Record"],
+      record: flags.recording ? ["■", "Stop recording"] : ["●", "Record"],
       save: ["", "Save"],
       replay: flags.replaying ? ["■", "Stop"] : ["", "Replay"],
     }

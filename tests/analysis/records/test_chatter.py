@@ -7,6 +7,7 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
+from hapticlab.analysis.records.chatter_end import linear_trend
 from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
 
@@ -237,3 +238,8 @@ def test_a_heavily_damped_handle_that_creeps_to_rest_dies_out():
         x = 5e-3 + 4e-3 * np.exp(rate * t) * np.cos(2 * np.pi * 1.2 * t + 1.0)
         found = chatter(record(x, F=200 * x))
         assert found.state == state and found.inside_growth == pytest.approx(rate, rel=2e-3)
+
+
+@pytest.mark.parametrize("samples", [0, 1, 3])
+def test_no_trend_is_seen_in_the_few_samples_since_a_handle_came_back_inside(samples):
+    assert linear_trend(np.linspace(0.01, 0.02, samples), np.ones(samples)) == 0.0

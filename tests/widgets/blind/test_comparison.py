@@ -88,10 +88,10 @@ def test_nothing_moves_but_what_is_shown_and_no_picture_tells_which_it_is(paddle
         assert page.session.motion.running
         page.session.intend(0.01)
         page.go(0.5)
-        pictures.append([item[0] for item in page.session.stage._drawn(0.01)])
+        pictures.append([item[0] for item in page.session.stage.drawn(0.01)])
         page.say("hide")
         assert not page.session.motion.running
-    assert pictures[0] == pictures[1] and not any("motor" in str(item) for item in page.session.stage._drawn(0.01))
+    assert pictures[0] == pictures[1] and not any("motor" in str(item) for item in page.session.stage.drawn(0.01))
     told = page.session.description()
     assert told["parameters"] == [] and [trace["name"] for trace in told["traces"]] == ["x"]
 

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from ..library.parts import primitives
-from .frame import Frame
+from ...library.parts import primitives
+from ..frame import Frame
+from ..sliders import open_ipywidgets
 from .plain_letters import plain
-from .sliders import open_ipywidgets
 
 #: an SVG is drawn so often a second at most: of frames that come at 50 to 60 a second, every other one
 RATE = 40.0

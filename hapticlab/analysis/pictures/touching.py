@@ -3,8 +3,8 @@
 import numpy as np
 import sympy as sp
 
-from ..analysis.pictures.plain_formulas import HANDLE
-from ..analysis.pictures.wall_boundaries import depths
+from .plain_formulas import HANDLE
+from .wall_boundaries import depths
 
 #: a body that rests on another is found so far above it, by rounding and by the steps of a method [m]
 CLOSE = 1e-6
