@@ -6,6 +6,8 @@ from ...course.cards.card import STYLES, Card
 
 #: in the words on a case, what was expected: up to the end of the sentence
 EXPECTED = re.compile(r",? expected [^;]*?(?=\.?$|\. [A-Z]|;)")
+#: what words begin with where the code ended with an error: a hint about the physics would lead away from it
+RAISED = "it raises "
 #: the style sheet holds what the card in a notebook has in its elements: the page's policy allows no style there
 SHEET = "".join(f".card-{part} {{ {look} }}\n" for part, look in STYLES.items())
 
@@ -21,7 +23,7 @@ def card(one):
     >>> [line.partition(":</strong> ")[2] for line in card(one).split("</p>")[1:-1]]
     ['-2 N', 'The sign is turned.', 'Who pushes?']
     """
-    told = {"wrong": _without_answer(one), "likely slip": one.slip, "hint": one.hint}
+    told = {"wrong": _without_answer(one), "likely slip": one.slip, "hint": "" if one.words.startswith(RAISED) else one.hint}
     rows = tuple((label, words) for label, words in told.items() if words)
     return Card("", "partly" if one.right else "wrong", f"{one.right} of {one.cases} cases right", rows=rows).html(_classes)
 

@@ -147,6 +147,14 @@ def test_a_choice_tells_its_options_and_a_right_answer_takes_one_line(tmp_path):
     assert "the stiffness" not in page.words and page.words.count("k ✓ right") == 2
 
 
+def test_code_that_ends_with_an_error_gets_no_hint_about_the_physics(tmp_path):
+    words = {"math": "it raises NameError in line 7 of its cell: math is not known yet.", "sign": "-2 N, expected 2 N."}
+    one = ExerciseReport("wall", "function", points=1.0, answered=True, cases=1, hint="Which of the two frequencies?")
+    reports = [Report(name, "02", "Walls", "w", exercises=(replace(one, words=said),)) for name, said in words.items()]
+    _, math, sign = map(Page, write_pages(reports, tmp_path, lab=LAB))
+    assert "hint:" not in math.words and "math is not known yet" in math.words and "hint: Which of" in sign.words
+
+
 def test_the_same_reports_give_the_same_bytes_in_whatever_order(written, tmp_path):
     again = write_pages(written.reports[::-1], tmp_path, lab=written.lab)
     assert [path.read_bytes() for path in again] == [path.read_bytes() for path in written.paths]
