@@ -28,12 +28,13 @@ def ports(parser, options):
         asked = "asked by connect()" if port.known else "left alone unless named: it may drive something else"
         print(f"{port.device:<16} {port.known or port.description or 'unknown':<36} {asked}")
     if not any(port.known for port in found):
-        print("no known board is plugged in; `hapticlab doctor` says what to look at", file=sys.stderr)
+        print("No known board is plugged in; everything else works without one: hapticlab labs", file=sys.stderr)
+        print("If you have a board, this says what to look at: hapticlab doctor", file=sys.stderr)
     return 0
 
 
 def doctor(parser, options):
-    """Walk from the cable to the motor; 1 if anything is a fault."""
+    """Walk from the cable to the motor; 1 if anything is a fault, or no board is there."""
     alone = options.no_person or options.json or _is_simulated(options.port) or not sys.stdin.isatty()
     with _words_apart(options):
         report = walk(options.port, None if alone else Person(), tell=print)

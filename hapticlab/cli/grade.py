@@ -151,7 +151,9 @@ def _write(options, assignment, reports, roster):
         words = "What was graded is kept; make room and give the same command again" if options.output else "Name a file: -o FILE"
         raise CourseError(f"cannot write {place}: {problem.strerror}. {words}") from None
     if options.pages:
-        write_pages(reports, options.pages, lab=assignment.lab)
+        of_class, *others = write_pages(reports, options.pages, lab=assignment.lab)
+        students = f"; {len(others)} of students in {of_class.parent / 'students'}" if others else ""
+        _say(f"page of the class: {of_class}{students}")
     if options.gradebook:
         lost = push(reports, options.gradebook, options.assignment or None)
         for said in lost:
@@ -184,12 +186,10 @@ def _tell_walls(walls):
 
 
 def _tell(done, roster, beside=()):
-    """Say what it cost, who could not be graded, and who handed in nothing."""
-    graded = f"{len(done.seconds)} graded, {done.known} known from before"
+    """Say who was graded, who could not be graded, and who handed in nothing."""
+    graded = f"{len(done.seconds)} graded" + (f", {done.known} known from before" if done.known else "")
     if done.seconds:
-        each = done.processor / len(done.seconds)
-        graded += f"; sandbox: {done.walls.level}"
-        graded += f"; {statistics.median(done.seconds):.2f} s each (median), {each:.2f} s of a processor (mean, start included)"
+        graded += f"; sandbox: {done.walls.level}; {statistics.median(done.seconds):.2f} s each (median)"
     _say(graded)
     for report in done.failed:
         again = "; the same command tries it again" if report.grader_failed else ""

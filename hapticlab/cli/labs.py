@@ -12,11 +12,12 @@ from ..course.instructor import check_tree, mark_notebook, solved_notebook
 from ..course.labs import copy_labs, find_labs, incomplete_labs
 from ..course.notebook import read, write
 from ..errors import CourseError, EngineMissingError
+from .begin import lab_number
 
 
 def labs(parser, options):
     """Copy the labs and open JupyterLab on them; for an instructor first the solved notebooks and their marks."""
-    folder = Path(options.folder)
+    folder = _wanted(parser, options)
     if options.instructor:
         check_tree(options.instructor)
     elif options.seed is not None:
@@ -25,11 +26,24 @@ def labs(parser, options):
     _tell(folder, copied)
     code = _mark_all(folder, Path(options.instructor), options) if options.instructor else 0
     here = [lab for lab in find_labs(folder) if copied.get(str(Path(lab.name, lab.notebook.name))) in ("new", "as it came")]
+    if len(options.lab) == 1:  # asked for by its number: also where it is begun
+        here = [lab for lab in find_labs(folder) if lab.number == options.lab[0]]
     command = _jupyter(folder, *here[:1])
     if options.no_open:
         print(f"\nto open them: {words_of(command)}")
         return code
     return _open(command) or code
+
+
+def _wanted(parser, options):
+    """Return the folder, and put labs that were named by number alone, as "6" or "06", with those of --lab."""
+    numbers = [lab_number(text) for text in options.wanted if text.isdecimal() and len(text) <= 2]
+    folders = [text for text in options.wanted if not (text.isdecimal() and len(text) <= 2)]
+    if len(folders) > 1:
+        words = "give one, and labs by their numbers: hapticlab labs 02 06 DIR"
+        parser.error(f"{' and '.join(folders)} are several folders; {words}")
+    options.lab = [*dict.fromkeys([*options.lab, *numbers])]
+    return Path(folders[0] if folders else "hapticlab-labs")
 
 
 def _tell(folder, copied):

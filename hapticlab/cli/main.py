@@ -5,6 +5,7 @@ import sys
 from importlib import import_module
 
 from ..errors import HapticlabError
+from .begin import unknown
 from .exits import BROKEN_PIPE, INTERRUPTED, USAGE, complain
 from .options import parser
 
@@ -17,7 +18,11 @@ def main(arguments=None):
     if hasattr(sys.stdout, "reconfigure"):  # a console that cannot write a name writes its number, and the command goes on
         sys.stdout.reconfigure(errors="backslashreplace")
     commands = parser()
-    options = commands.parse_args(arguments)
+    given = sys.argv[1:] if arguments is None else [*arguments]
+    if given and not given[0].startswith("-") and given[0] not in commands.commands:
+        complain(f"{unknown(given[0])} `hapticlab -h` lists the commands")
+        return USAGE
+    options = commands.parse_args(given)
     if options.command is None:
         commands.print_help()
         return USAGE

@@ -11,6 +11,7 @@ from .. import __version__
 from ..compiler.boards.board_records import BOARDS
 from ..grading.formats import FORMATS
 from ..grading.sessions.limits import MIB, Limits
+from .begin import Parser, lab_number
 
 #: `hapticlab tradeoff --targets`, `hapticlab calibrate --only`, `hapticlab grade --sandbox`: names that modules define which take
 #: long to import; a test compares them
@@ -24,11 +25,10 @@ MOST_MEMORY = 1 << 24
 
 def parser():
     """Return the parser of all commands; its options have ``command``, as "module.function", and that command's ``parser``."""
-    made = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
+    made = Parser(prog="hapticlab")
     made.add_argument("--version", action="version", version=f"hapticlab {__version__}")
     made.set_defaults(command=None, parser=made)
-    named = "{demo,labs,assign,grade,run,tradeoff,ports,doctor,flash,calibrate}"
-    commands = made.add_subparsers(title="commands", metavar=named)
+    commands = made.add_subparsers(title="commands", metavar="COMMAND", parser_class=argparse.ArgumentParser)
     shared = argparse.ArgumentParser(add_help=False)
     shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     _add_demo(commands, shared)
@@ -38,12 +38,13 @@ def parser():
     for one in (_add_run(commands, shared), _add_tradeoff(commands, shared)):
         one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     _add_board_commands(commands, shared)
+    made.commands = commands.choices
     return made
 
 
-def _add_command(commands, function, text, parents=()):
+def _add_command(commands, function, text, parents=(), aliases=()):
     """Return the parser of one command, which `cli.main` runs by calling ``function``, "module.name"."""
-    made = commands.add_parser(function.rpartition(".")[2], parents=parents, help=text, description=text)
+    made = commands.add_parser(function.rpartition(".")[2], parents=parents, help=text, description=text, aliases=aliases)
     made.set_defaults(command=function, parser=made)
     return made
 
@@ -53,7 +54,7 @@ def _add_out(made, folder):
 
 
 def _add_demo(commands, shared):
-    text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
+    text = "simulate virtual walls of growing stiffness until they chatter, and run an equation of motion, with figures"
     made = _add_command(commands, "cli.scenes.demo", text, [shared])
     made.add_argument("--quick", action="store_true", help="fewer stiffnesses, shorter runs")
     _add_out(made, "hapticlab-demo")
@@ -93,12 +94,13 @@ def _add_tradeoff(commands, shared):
 
 
 def _add_labs(commands):
-    text = "copy the labs into a folder without overwriting files that you have changed, and open them in JupyterLab"
-    made = _add_command(commands, "cli.labs.labs", text)
-    made.add_argument("folder", metavar="DIR", nargs="?", default="hapticlab-labs", help="(default: %(default)s)")
+    text = "copy labs into a folder without overwriting files that you have changed, and open them in JupyterLab"
+    made = _add_command(commands, "cli.labs.labs", text, aliases=["lab"])
+    words = "numbers of labs, and the folder to copy them into (default: all labs, hapticlab-labs)"
+    made.add_argument("wanted", metavar="NN or DIR", nargs="*", help=words)
     made.add_argument("--no-open", action="store_true", help="only copy, and say how to open them")
     words = "copy these labs; by default all, or those that are in the folder already"
-    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help=words)
+    made.add_argument("--lab", type=lab_number, nargs="+", default=[], metavar="NN", help=words)
     words = "folder of answers: write solved notebooks into DIR-solved, and mark these and the labs as they came with hapticlab"
     made.add_argument("--instructor", metavar="PATH", help=words)
     made.add_argument("--seed", type=_seed, metavar="N", help="of an instructor's hidden cases (default: 0)")
@@ -111,7 +113,7 @@ def _add_assign(commands):
     made.add_argument("--for", dest="system", choices=SYSTEMS, help="what grades or collects")
     made.add_argument("--personal", action="store_true", help="numbers of their own for the students of --roster")
     words = "these labs, by number, or own ones by folder (default: all that came with hapticlab)"
-    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help=words)
+    made.add_argument("--lab", type=lab_number, nargs="+", default=[], metavar="NN", help=words)
     made.add_argument("--instructor", required=True, metavar="PATH", help="folder of answers, which holds NN_name/solution.py")
     made.add_argument("--seed", type=_seed, metavar="N", help="of hidden cases and of students' own numbers (default: 0)")
     made.add_argument("--roster", metavar="FILE.csv", help="the class, for --personal")
@@ -126,7 +128,7 @@ def _add_grade(commands):
     words = "notebooks, scripts, archives, folders of these, or nbgrader's submitted tree"
     made.add_argument("submissions", metavar="SUBMISSION", nargs="+", help=words)
     words = "lab number, or folder of a lab of your own (default: detected from the submissions)"
-    made.add_argument("--lab", metavar="NN", help=words)
+    made.add_argument("--lab", type=lab_number, metavar="NN", help=words)
     made.add_argument("--instructor", metavar="PATH", help="folder of answers, for hidden cases; else public ones alone count")
     made.add_argument("--seed", type=_seed, default=0, metavar="N", help="of the hidden cases (default: 0)")
     made.add_argument("--personal", action="store_true", help="each student was handed numbers of their own, by this seed")

@@ -131,6 +131,17 @@ def test_a_folder_that_cannot_be_is_refused_before_anything_is_written(place, ar
     assert files(place) == before
 
 
+def test_a_lab_is_named_by_its_number_and_never_taken_for_a_folder(place, capfd):
+    for given in (["labs", "9"], ["lab", "09"], ["labs", "--lab", "9"], ["lab", "mine", "9"]):
+        assert main(given) == 0
+        assert json.loads(Path("called.json").read_text())[0][-1].endswith("/09_springs/09_springs.ipynb"), given
+        folder = "mine" if "mine" in given else "hapticlab-labs"
+        assert [path.name for path in sorted(Path(folder).glob("0*"))] == ["09_springs"]
+        assert not Path("9").exists() and not Path("09").exists()
+    assert main(["labs", "7"]) == 1
+    assert "there is no lab 07; there are 08, 09" in capfd.readouterr().err
+
+
 def test_without_jupyterlab_the_labs_are_copied_and_the_cure_is_said(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "jupyterlab", None)
     assert main(["labs"]) == 1

@@ -287,7 +287,10 @@ def test_a_run_that_left_events_out_says_so_in_its_report(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), "usage"),
+        ((), "Begin here"),
+        (("lbs",), "'lbs' is not a command; did you mean labs?"),
+        (("labs", "one", "two"), "one and two are several folders"),
+        (("--foo",), "unrecognized arguments: --foo. `hapticlab -h` lists"),
         (("run",), "FILE.py"),
         (("run", "nowhere.py"), "no such file"),
         (("run", "."), "is a folder, needs a file"),
@@ -629,7 +632,7 @@ def test_the_names_that_options_offer_are_those_that_the_modules_define():
 
 
 def test_every_command_is_a_function_that_is_there():
-    commands = next(action for action in options.parser()._actions if action.dest == "==SUPPRESS==" and action.choices)
-    assert {name: callable(main._command(one.get_default("command"))) for name, one in commands.choices.items()} == dict.fromkeys(
-        ["demo", "labs", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate"], True
+    commands = options.parser().commands
+    assert {name: callable(main._command(one.get_default("command"))) for name, one in commands.items()} == dict.fromkeys(
+        ["demo", "labs", "lab", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate"], True
     )

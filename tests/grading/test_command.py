@@ -37,7 +37,9 @@ def test_a_class_is_graded_into_a_table_pages_and_a_code(course, here, tmp_path,
     assert {student: one["earned"] for student, one in found.items()} == {"ada": 10.0, "bob": 9.0, "cy": 0.0}
     assert "cy.ipynb" in found["cy"]["problem"] and found["ada"]["problem"] == ""
     assert sorted(path.name for path in (tmp_path / "pages").rglob("*.html")) == ["ada.html", "bob.html", "class.html", "cy.html"]
-    assert told.out == "" and "2 graded, 0 known from before" in told.err and "s of a processor" in told.err
+    pages = tmp_path / "pages"
+    assert f"page of the class: {pages / 'class.html'}; 3 of students in {pages / 'students'}" in told.err
+    assert told.out == "" and "2 graded; sandbox" in told.err and "known from before" not in told.err
     assert "not graded: cy, cy.ipynb" in told.err and "no submission of: dora" in told.err and "not in the roster: cy" in told.err
     assert "warning: without --instructor" not in told.err
     whole = (tmp_path / "r.json").read_bytes()

@@ -97,8 +97,9 @@ def permission_cure():
     group = next((g for g in ("dialout", "uucp") if _has_group(g)), "dialout")
     rules = shlex.quote(str(rules_file()))
     return (
-        f"do: sudo cp {rules} /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger, "
-        f"then plug it in again; or: sudo usermod -aG {group} $USER, then log out and in"
+        f"do, then plug it in again:\nsudo cp {rules} /etc/udev/rules.d/ "
+        "&& sudo udevadm control --reload && sudo udevadm trigger\n"
+        f"or, then log out and in:\nsudo usermod -aG {group} $USER"
     )
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from .person import Person
 
-STATES = ("ok", "attention", "fault", "skipped")
+STATES = ("ok", "attention", "fault", "no board", "skipped")
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Report(ShowsItself):
 
     @property
     def exit_code(self):
-        """0, or 1 where anything is a fault."""
-        return int(any(check.state == "fault" for check in self.checks))
+        """0, or 1 where anything is a fault or no board is there."""
+        return int(any(check.state in ("fault", "no board") for check in self.checks))
 
     def __getitem__(self, name):
         """Return the last check of that name; KeyError where the walk did not come so far."""
@@ -41,7 +41,8 @@ class Report(ShowsItself):
         return [asdict(check) for check in self.checks]
 
     def _sentence(self):
-        return ", ".join(f"{count} {s}" for s in STATES if (count := sum(c.state == s for c in self.checks)))
+        found = {state: sum(check.state == state for check in self.checks) for state in STATES}
+        return ", ".join(state if state == "no board" else f"{count} {state}" for state, count in found.items() if count)
 
     def __str__(self):
         return "\n".join([*map(str, self.checks), self._sentence()])
@@ -134,7 +135,10 @@ def _ports(url):
         names = ", ".join(port.device for port in known)
         return checks.Check("computer", "fault", f"{len(known)} known boards: {listed}", f"name one of {names} with --port"), None
     cure = (
-        "plug in the board. Try another cable, because some carry power only, and a USB socket without a hub. Copies with a "
-        "CH340 need its driver on Windows and older macOS. If the port is listed but not recognised, name it with --port"
+        "everything else works without a board; try: hapticlab labs\n"
+        "if you have a board: plug it in. Try another cable, because some carry power only, and a USB socket without a hub\n"
+        "copies with a CH340 need its driver on Windows and older macOS\n"
+        "if its port is listed here, name it with --port\n"
+        f"if this system does not let you open it, {permission_cure()}"
     )
-    return checks.Check("computer", "fault", f"no known board: {listed}", f"{cure}; Linux: {permission_cure()}"), None
+    return checks.Check("computer", "no board", f"no known board: {listed}", cure), None

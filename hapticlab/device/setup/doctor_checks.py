@@ -1,7 +1,9 @@
 """The steps of hapticlab.device.setup.doctor: each looks at one thing and returns a Check."""
 
 import secrets
+import shutil
 import sys
+import textwrap
 from contextlib import closing, suppress
 from dataclasses import dataclass
 
@@ -34,7 +36,7 @@ STOPS_PART = 0.02
 
 @dataclass(frozen=True)
 class Check:
-    """One step: name, state ("ok", "attention", "fault", "skipped"), what was found, what to do."""
+    """One step: name, state ("ok", "attention", "fault", "no board", "skipped"), what was found, what to do in lines."""
 
     name: str
     state: str
@@ -42,7 +44,21 @@ class Check:
     cure: str = ""
 
     def __str__(self):
-        return f"{self.state:<10} {self.name:<10} {self.found}" + (f"\n{'':<21} -> {self.cure}" if self.cure else "")
+        lines = _short(f"{self.state:<10} {self.name:<10} {self.found}", "", " " * 22)
+        for cure in self.cure.splitlines():
+            lines += [f"{COMMAND}{cure}"] if cure.startswith("sudo ") else _short(cure, f"{'':<10} -> ", " " * 14)
+        return "\n".join(lines)
+
+
+#: before a command that is to be typed: never wrapped, so that it can be copied
+COMMAND = " " * 17
+
+
+def _short(words, first, next_ones):
+    """Lines that fit the terminal, broken between words alone."""
+    width = max(60, min(shutil.get_terminal_size().columns, 110))
+    fitting = {"break_long_words": False, "break_on_hyphens": False}
+    return textwrap.wrap(words, width, initial_indent=first, subsequent_indent=next_ones, **fitting)
 
 
 def firmware(port, url, connected):
