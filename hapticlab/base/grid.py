@@ -41,7 +41,7 @@ class Grid:
         """The table of records of one class: the attributes named, or all documented ones that a cell can hold."""
         named = {"": list(records)} if isinstance(records, Mapping) else {}
         listed = [facts(one) for one in (records.values() if isinstance(records, Mapping) else records)]
-        hidden = getattr(type(next(iter(records.values() if named else records), None)), "hidden", ())  # type: ignore[union-attr]
+        hidden = getattr(type(next(iter(records.values() if named else records), None)), "_hidden", ())  # type: ignore[union-attr]
         columns = {f.name: [] for f in listed[0] if f.name not in hidden} if listed else {}  # type: ignore[var-annotated]
         for fact in (fact for known in listed for fact in known if fact.name in columns):
             columns[fact.name].append(fact.value)

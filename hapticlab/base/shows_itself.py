@@ -28,7 +28,7 @@ _QUIET = "color: var(--jp-ui-font-color2, inherit)"
 
 
 class ShowsItself:
-    """What a notebook shows of an object, and its ``repr`` in one line; ``hidden`` are facts that say nothing there.
+    """What a notebook shows of an object, and its ``repr`` in one line; ``_hidden`` are facts that say nothing there.
 
     Examples
     --------
@@ -51,7 +51,7 @@ class ShowsItself:
     True
     """
 
-    hidden: ClassVar[tuple[str, ...]] = ()
+    _hidden: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Give a class one line for ``repr``, where it says itself by ``__str__``: a dataclass keeps a method that is there.
@@ -84,7 +84,7 @@ class ShowsItself:
         return self.plot() if hasattr(self, "plot") else None
 
     def _facts(self) -> list[Fact]:
-        return [fact for fact in facts(self) if fact.name not in self.hidden]
+        return [fact for fact in facts(self) if fact.name not in self._hidden]
 
     def _line(self) -> str:
         return f"{type(self).__name__}({self._sentence()})"

@@ -51,11 +51,14 @@ def dimension(unit):
 
 @lru_cache(maxsize=1024)
 def _dimension(unit):
+    cure = _spelling(unit)
     try:
         size, exponents = _read(unit)
     except ValueError as problem:
-        why = "" if "TypeError" in str(problem) else f" ({problem})"  # which is about pint's own insides
-        raise UnitsError(f"unit {unit!r} is not known{why}; {_spelling(unit)}") from None
+        why = "" if cure or "TypeError" in str(problem) else f" ({problem})"  # which is about pint's own insides
+        raise UnitsError(f"unit {unit!r} is not known{why}; {cure or 'write it like N*s/m, m/s^2, kg or 1'}") from None
+    if size != 1.0 and cure and unit.startswith("N"):
+        raise UnitsError(f"unit {unit!r} is not known; {cure}")  # Nm^-1, which pint reads as one over nanometres
     if size != 1.0:
         si = "rad" if unit in _ANGLES else si_name(exponents)
         raise UnitsError(f"unit {unit!r} is not SI; declare {si} and bind a value with its unit, as in '10 {unit}'")
@@ -63,10 +66,12 @@ def _dimension(unit):
 
 
 def _spelling(unit):
-    """How a unit is to be written: one of negative powers, such as Nm-1, as a quotient."""
-    powers = re.fullmatch(r"([A-Za-z*]*?)\*?(m|s|kg|N|rad)\^?-([12])", unit)
-    below = powers and powers[2] + ("" if powers[3] == "1" else f"^{powers[3]}")
-    return f"write it {powers[1] or '1'}/{below}" if powers else "write it like N*s/m, m/s^2, kg or 1"
+    """How a unit is to be written that runs together or has a negative power, such as Ns/m or Nm-1; else nothing."""
+    powers = re.fullmatch(r"([A-Za-z*]*?)[* ]?(m|s|kg|N|rad)\^?-([12])", unit)
+    if powers:
+        return f"write it {powers[1] or '1'}/{powers[2]}" + ("" if powers[3] == "1" else f"^{powers[3]}")
+    joined = re.sub(r"\b(N|kg)(m|s)\b", r"\1*\2", unit)
+    return f"write it {joined}" if joined != unit and metric(joined) else ""
 
 
 def _read(unit):

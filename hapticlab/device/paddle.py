@@ -35,7 +35,7 @@ class Paddle(ShowsItself, ABC):
         Where v(n) comes from; "measured" is exact and exists in simulation only.
     """
 
-    hidden = ("board", "settings")
+    _hidden = ("board", "settings")
     T: float
 
     @property

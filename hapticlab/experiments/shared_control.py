@@ -57,7 +57,7 @@ class Assisted(ShowsItself):
     peak_force: float
     work: float
     log: Telemetry
-    hidden = ("log",)
+    _hidden = ("log",)
 
     def __str__(self) -> str:
         return f"{self.scene}: error {1e3 * self.error:.4g} mm, tremor {1e3 * self.tremor:.4g} mm"

@@ -123,7 +123,7 @@ class Found(Tabular):
         counting = 0.0 if self.dithered else self.quantum
         return bool(explains((self.measured - self.fitted)[:, None], self.measured[:, None], counting)[0])
 
-    hidden = ("about", "lacking", "advice", "above", "bounded", "constants")
+    _hidden = ("about", "lacking", "advice", "above", "bounded", "constants")
 
     def _tables(self):
         grid = Grid.of(self.estimates, "value", "low", "high", "unit")

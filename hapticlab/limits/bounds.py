@@ -260,7 +260,7 @@ class Bounds(Tabular):
     def __getitem__(self, name: str) -> Limit | str:
         return self.found[name]
 
-    hidden = ("found",)
+    _hidden = ("found",)
 
     def _tables(self):
         rows = [

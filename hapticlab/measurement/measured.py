@@ -126,7 +126,7 @@ class MeasuredImpedance(Tabular):
         """Draw magnitude, and real part: measured, the law's own, the ideal."""
         return plot_impedance(self)
 
-    hidden = ("measured", "other")
+    _hidden = ("measured", "other")
 
     def _sentence(self):
         span = f"{self.frequency[0]:.4g} to {self.frequency[-1]:.4g} Hz"

@@ -66,7 +66,7 @@ class ZWidth(Tabular):
         """Draw both borders with passivity and exact stability."""
         return plot_border(self)
 
-    hidden = ("searches",)
+    _hidden = ("searches",)
 
     def _tables(self):
         columns = {"B": self.B, "K": self.K}

@@ -271,7 +271,7 @@ class Tradeoff(Tabular):
             lines += ["", f"{target}: what none beats", self.front(target).brief(), str(self.choose(target=target, **asked))]
         return "\n".join(lines)
 
-    hidden = ("bench",)
+    _hidden = ("bench",)
 
     def _tables(self):
         yield from self.table._tables()

@@ -174,7 +174,7 @@ class WorstMotion(ShowsItself):
         counted = sp.Eq(step(n), when(step(n - 1) < last - 0.5, step(n - 1) + 1, 0))
         return Scene(force=F_peak * force, eom=[counted], name=f"forces of the worst motion of {self.scene}")
 
-    hidden = ("program",)
+    _hidden = ("program",)
 
     def __str__(self) -> str:
         each = f"{1e6 * self.drawn:.4g} uJ per cycle of {1e3 * self.period:g} ms"

@@ -77,7 +77,7 @@ class Sweep(ShowsItself, Guessed):
         """Draw lines or a map; see :func:`hapticlab.analysis.records.sweep_plot.plot_sweep`."""
         return plot_sweep(self, limits=limits)
 
-    hidden = ("axes", "units", "unit", "metric")
+    _hidden = ("axes", "units", "unit", "metric")
 
     def _sentence(self):
         of = " and ".join(f"{name} ({len(values)} values)" for name, values in self.axes.items())

@@ -109,7 +109,7 @@ class WallMap(ShowsItself):
         """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.walls.wall_map_plot.plot_wall_map`."""
         return plot_wall_map(self)
 
-    hidden = ("axes", "regions", "rows", "limits", "units")
+    _hidden = ("axes", "regions", "rows", "limits", "units")
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` of regions and amplitude over K and the other quantity, SI; units in ``attrs["units"]``.

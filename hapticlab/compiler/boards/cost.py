@@ -175,7 +175,7 @@ class Cost(ShowsItself):
         """Return a figure: what a step takes of its period, typically and at most."""
         return plot_cost(self)
 
-    hidden = ("board", "step", "traffic")
+    _hidden = ("board", "step", "traffic")
 
     def __str__(self):
         lines = [

@@ -95,7 +95,7 @@ class Contacts(ShowsItself, tuple):
         """
         return {name: number_of(d) / T for name, d in self.thickness.items()}
 
-    hidden = ("thickness", "places", "values")
+    _hidden = ("thickness", "places", "values")
 
     def __str__(self):
         lines = [f"{len(self)} contacts: {', '.join(c.name for c in self) or 'none'}"]

@@ -80,7 +80,8 @@ def wall(
     >>> hl.wall("half_sample", velocity=hl.velocity.filtered(tau="4 ms")).name
     'half_sample wall, filtered difference'
     """
-    choice("law", law, TAPS, error=SceneError)
+    need = f"one of {', '.join(TAPS)}. A stiffness is given by name: hl.wall(k=300)"
+    choice("law", law, TAPS, need=need if isinstance(law, (int, float)) else None, error=SceneError)
     choice("unilateral", unilateral, UNILATERAL, need="'gate', 'clip' or None (the spring always acts)", error=SceneError)
     stiffness, boundary = parameters("k x_o", units="N/m m", values=(None, 0))
     damping = parameters("B", units="N*s/m", values=0, ranges=(-math.inf, math.inf))
