@@ -28,10 +28,12 @@ class Sketch:
         What the picture shows [m].
     tilt : float
         Angle by which everything but the letters is turned about the origin [rad, counterclockwise].
+    u : float, optional
+        The unit of parts without a size [m], where it is not a hundredth of the width.
     """
 
-    def __init__(self, axes, left, right, bottom, top, tilt=0.0):
-        self.axes, self.u = axes, max((right - left) / 100, (top - bottom) / 26)
+    def __init__(self, axes, left, right, bottom, top, tilt=0.0, u=None):
+        self.axes, self.u = axes, u or max((right - left) / 100, (top - bottom) / 26)
         self._turn = (math.cos(tilt), math.sin(tilt)) if tilt else None
         self.left, self.right, self.bottom, self.top = left, right, bottom, top
         # what is shown along the handle's way, and across it

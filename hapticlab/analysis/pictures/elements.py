@@ -35,7 +35,7 @@ class Elements:
     weights : dict of str to expression
         Accelerations that pull each towards its negative direction.
     carriers : dict of str to str
-        Angle -> the coordinate that its pivot moves with, whose inertia it shares.
+        Angle -> the coordinate that its pivot moves with, whose inertia it shares: a body, or the pendulum that it hangs on.
     rods, bobs : dict of str to expression
         Of such an angle: length of its pendulum, positive where it turns towards positive coordinates; mass of the bob.
     """
@@ -71,24 +71,29 @@ def elements(scene):
     for name, (mass, acts) in rows.items():
         found.masses[name] = mass[name]
         constant = reader.at_rest(acts)
-        weight = sp.simplify(-constant / mass[name]) if mass[name] != 0 else sp.S.Zero
+        weight = sp.cancel(-constant / mass[name]) if mass[name] != 0 else sp.S.Zero
         if weight != 0 and not weight.has(sp.Symbol("t", real=True)):
             found.weights[name] = weight
         drive = sum(term for term in sp.Add.make_args(acts) if term.has(sp.Symbol("t", real=True)))
         if drive != 0:
             found.drives[name] = drive
     found.ties = [tie for tie in reader.ties(rows) if tie]
-    for k, (angle, unit) in enumerate(units.items()):
-        if unit == "rad":
-            inertia, _ = reader.row(form, k)
-            for name in lengths:
-                if inertia[name] != 0:
-                    rod = sp.simplify(inertia[angle] / inertia[name])
-                    bob = sp.simplify(rows[name][0][angle] / rod)
-                    found.carriers[angle], found.rods[angle], found.bobs[angle] = name, rod, bob
-                    found.masses[name] = sp.simplify(found.masses[name] - bob)
-                    break
+    _pendulums(found, reader, form, units, rows)
     return found
+
+
+def _pendulums(found, reader, form, units, rows):
+    """Note what swings on a body, or on another pendulum that swings on it."""
+    for k, (angle, unit) in enumerate(units.items()):
+        inertia = reader.row(form, k)[0] if unit == "rad" else {}
+        body = next((name for name in rows if inertia.get(name, 0) != 0), None)
+        if body:
+            rod = sp.cancel(inertia[angle] / inertia[body])
+            bob = sp.cancel(rows[body][0][angle] / rod)
+            above = [other for other in found.rods if found.carriers[other] == body and inertia[other] != 0]
+            found.carriers[angle], found.rods[angle], found.bobs[angle] = (above or [body])[-1], rod, bob
+            carried, mass = (found.bobs, above[-1]) if above else (found.masses, body)
+            carried[mass] = sp.cancel(carried[mass] - bob)
 
 
 class _Reader:
@@ -112,14 +117,14 @@ class _Reader:
     def at_rest(self, expr):
         """What an expression is where everything is at zero, at t = 0 for what is driven."""
         quiet = sum(term for term in sp.Add.make_args(sp.expand(expr)) if not term.has(sp.Symbol("t", real=True)))
-        return sp.simplify(sp.sympify(quiet).xreplace(self._rest))
+        return sp.cancel(sp.sympify(quiet).xreplace(self._rest))
 
     def slope(self, expr, name, prefix=""):
         """The derivative of a force by a position or a rate, at rest; None where it has none anywhere."""
         slope = sp.sympify(expr).diff(sp.Symbol(prefix + name, real=True))
         if slope == 0:
             return None
-        rest = sp.simplify(slope.xreplace(self._rest))
+        rest = sp.cancel(slope.xreplace(self._rest))
         return rest if rest.is_finite is not False else sp.S.Zero
 
     def row(self, form, k):
@@ -129,10 +134,10 @@ class _Reader:
         for prefix in ("", RATE):
             felt, own = self.slope(self.felt, name, prefix), self.slope(acts, "x", prefix)
             if felt and own:
-                scale = sp.simplify(-felt / own)
+                scale = sp.cancel(-felt / own)
                 break
         inertia = {
-            other: sp.simplify(scale * self.plain(m).xreplace(self._rest)) for other, m in zip(names, form.M[k], strict=True)
+            other: sp.cancel(scale * self.plain(m).xreplace(self._rest)) for other, m in zip(names, form.M[k], strict=True)
         }
         return inertia, sp.expand(scale * acts)
 
@@ -147,7 +152,7 @@ class _Reader:
             for other in names[k + 1 :]:
                 if any(part is not None for part in parts[other]):
                     yield Tie(name, other, *parts[other])
-            sums = [sp.simplify(-sum(parts[other][way] or 0 for other in parts)) for way in (0, 1)]
+            sums = [sp.cancel(-sum(parts[other][way] or 0 for other in parts)) for way in (0, 1)]
             held = [total if total != 0 and parts[name][way] is not None else None for way, total in enumerate(sums)]
             if any(part is not None for part in held):
                 yield Tie(name, "", *held)

@@ -1,5 +1,6 @@
 """Where the parts of a schematic stand: along the handle's way in metres; their sizes in u, a hundredth of its width."""
 
+import math
 from dataclasses import dataclass, field
 
 from ...library.sketch import THICK, Sketch, clearance
@@ -10,6 +11,8 @@ REACH, UPRIGHT = 0.05, 0.02
 WIDE, HIGH, NARROW = 100.0, 26.0, 44.0
 #: the longest pendulum, and a dial [u]
 ROD, DIAL = 14.0, 12.0
+#: more bodies than these are drawn narrower
+FEW = 3
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,7 @@ class Layout:
     def u(self, rod):
         """A hundredth of the picture's width [m], with a pendulum of this length [m] in it."""
         fixed, metres = self.right
-        room = HIGH if self.upright else WIDE
+        room = HIGH if self.upright else max(WIDE, 1.6 * fixed)  # a long row is drawn smaller
         return max((metres + self.reach) / (room - fixed - self._left), rod / ROD)
 
     @property
@@ -65,9 +68,9 @@ class Layout:
         start, end = -self.reach - self._left * u, fixed * u + metres
         if self.upright:
             spare = (HIGH * u - (end - start)) / 2
-            return Sketch(axes, -0.4 * NARROW * u, 0.6 * NARROW * u, start - spare, end + spare, tilt=0.5 * 3.141592653589793)
+            return Sketch(axes, -0.4 * NARROW * u, 0.6 * NARROW * u, start - spare, end + spare, tilt=0.5 * math.pi, u=u)
         top = {None: 0.5 * HIGH, True: 8.0, False: HIGH - 9.5}[self.hangs] * u
-        return Sketch(axes, start, end, top - HIGH * u, top)
+        return Sketch(axes, start, end, top - HIGH * u, top, u=u)
 
     def origins(self, state, u):
         """Where each coordinate's zero is drawn [m]: farther on where a body would be run into."""
@@ -105,6 +108,8 @@ def lay_out(bodies, *, upright, hangs, tied, meets, held, balls, start, dials):
     """
     half = {"x": 0.0} | {name: _half(name, upright, name in balls, meets) for name in bodies}
     spring, pressed = (2.2, 0.008) if upright else (9.0, 0.02)
+    if len(bodies) > FEW:
+        spring, half = 5.0, {name: min(one, 4.0) for name, one in half.items()}
     rest, before, stiff, place, last = {}, {}, set(), (0.0, 0.0), "x"
     for name in bodies:
         fixed, metres = place

@@ -76,7 +76,7 @@ class Schematic:
     def __call__(self, axes, **state):
         state = {**self.values, **self.start, **state}
         rods = {name: self._rod(name, state) for name in self.rods}
-        s = self.layout.sketch(axes, max([abs(rod) for rod, true in rods.values() if true], default=0.0))
+        s = self.layout.sketch(axes, sum(abs(rod) for rod, true in rods.values() if true))
         origin = self.layout.origins(state, s.u)
         at = {name: state[name] + zero for name, zero in origin.items()}
         for outline in self.outlines:
@@ -173,8 +173,7 @@ class Schematic:
         """Draw a force that depends on time, above its body."""
         u = s.u
         s.line((at, top), (at, top + 1.4 * u), width=1.0)
-        word = sp.latex(force) if sp.count_ops(force) <= 4 else "F(t)"
-        s.arrow((at, top + 1.4 * u), (at + 7 * u, top + 1.4 * u), f"${word}$", right=6.5, up=0.0)
+        s.arrow((at, top + 1.4 * u), (at + 7 * u, top + 1.4 * u), _symbol(force) or "$F(t)$", right=6.5, up=0.0)
 
     @staticmethod
     def _floor(s, at, half, name):
@@ -196,24 +195,26 @@ class Schematic:
             rod = self.rods[name][0](state)
         except (KeyError, TypeError, ValueError, ZeroDivisionError):
             rod = None
-        return (rod, True) if rod and np.isfinite(rod) else (1.0, False)
+        true = rod and np.isfinite(rod) and _symbol(self.parts.rods[name])
+        return (rod, True) if true else (1.0, False)
 
     def _turning(self, s, at, state, rods):
         """Draw what turns: hanging from or standing on what carries it, else a dial."""
         free, u = s.right, s.u
+        pivots = {name: np.array([place, 0.0]) for name, place in at.items()}
         for name, carrier in self.carried.items():
             turn, (rod, true) = state[name], rods[name]
-            if carrier in at:
+            if carrier in pivots:
                 rod = rod if true else np.sign(rod) * 0.9 * ROD * u
-                pivot, rest = np.array([at[carrier], 0.0]), (1 if self.stands[name] else -1) * np.pi / 2
+                pivot, rest = pivots[carrier], (1 if self.stands[name] else -1) * np.pi / 2
                 angle = rest - np.sign(rest) * np.sign(rod) * turn
-                bob = pivot + abs(rod) * np.array([np.cos(angle), np.sin(angle)])
+                pivots[name] = bob = pivot + abs(rod) * np.array([np.cos(angle), np.sin(angle)])
                 s.line(pivot, pivot + [0, np.sign(rest) * abs(rod)], width=0.8, color=SOFT, linestyle="--")
-                letter = f"${sp.latex(self.parts.rods[name])}$" if true else "not to scale"
+                letter = _symbol(self.parts.rods[name]) if true else "not to scale"
                 aside = 2.6 if np.cos(angle) >= 0 else -2.6
                 s.rod(pivot, bob, letter, right=aside, width=2.5)
                 s.disc(bob, 1.9 * u, zorder=5, name=name)
-                s.text(bob, f"${sp.latex(self.parts.bobs.get(name, ''))}$", right=4.2)
+                s.text(bob, _symbol(self.parts.bobs.get(name)), right=4.2)
                 s.pin(pivot)
                 s.angle(pivot, 0.45 * abs(rod) / u, rest, angle, _letters(name))
             else:
@@ -223,10 +224,10 @@ class Schematic:
 
     def _weight(self, s):
         """Draw which way a weight pulls."""
-        u, words = s.u, [f"${sp.latex(w)}$" for w in self.parts.weights.values() if sp.count_ops(w) == 0]
+        u, words = s.u, [_symbol(weight) for weight in self.parts.weights.values() if weight.is_Symbol]
         if self.upright:
             top = s.ends[1] - 2 * u
-            s.arrow((top, -6 * u), (top - 5 * u, -6 * u), words[0] if words else "$g$")
+            s.arrow((top, -9 * u), (top - 5 * u, -9 * u), words[0] if words else "$g$")
         elif self.layout.hangs is not None:
             place = s.right - 4 * u
             s.arrow((place, s.top - 4 * u), (place, s.top - 9 * u), "$g$", right=2.2, up=1.0)
@@ -249,9 +250,10 @@ def _start(scene):
     return start
 
 
+@cache
 def _symbol(part):
     """Return a coefficient as it is set; nothing where it has none, or a long one."""
-    return f"${sp.latex(part)}$" if part is not None and part != 0 and sp.count_ops(part) <= 2 else ""
+    return f"${sp.latex(part)}$" if part is not None and part != 0 and sp.count_ops(part) <= 3 else ""
 
 
 @cache

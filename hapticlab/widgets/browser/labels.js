@@ -53,8 +53,8 @@ class Labels {
       const place = this.choose(label, set, number)
       if (!place) continue
       const [x, y] = place
+      this.typeset(set, x - set.width / 2, y, label.colour, this.cost(x, y, set, 1) > 0 || this.covered(x, y) > 0)
       this.placed.push({ words: label.words, left: x - set.width / 2, right: x + set.width / 2, top: y - set.height / 2, bottom: y + set.height / 2 })
-      this.typeset(set, x - set.width / 2, y, label.colour)
     }
   }
 
@@ -67,7 +67,7 @@ class Labels {
     const order = before ? [before, ...places.keys()] : [...places.keys()]
     for (const k of order) {
       const [x, y] = places[k]
-      const cost = this.cost(x, y, set) + (k ? this.covered(x, y) : 0)
+      const cost = this.cost(x, y, set, least) + (k ? this.covered(x, y) : 0)
       if (cost < least) {
         best = k
         least = cost
@@ -76,19 +76,19 @@ class Labels {
     }
     if (best === null) return null
     // back to its own place as soon as that is free again
-    if (best !== 0 && this.cost(...places[0], set) === 0) best = 0
+    if (best !== 0 && this.cost(...places[0], set, 1) === 0) best = 0
     this.chosen.set(number, best)
     return places[best]
   }
 
   // How many lines a label would cover; infinite where it covers another label or leaves the picture.
-  cost(x, y, { width, height }) {
+  cost(x, y, { width, height }, most = Infinity) {
     const { picture, placed, segments } = this
     const [w, h] = [width / 2 + SPARE, height / 2 + SPARE]
     if (x - w < 0 || x + w > picture.width || y - h < 0 || y + h > picture.height - AXIS) return Infinity
     for (const other of placed) if (x + w > other.left && x - w < other.right && y + h > other.top && y - h < other.bottom) return Infinity
     let cost = 0
-    for (let i = 0; i < segments.length; i += 4) cost += crosses(segments[i] - x, segments[i + 1] - y, segments[i + 2] - x, segments[i + 3] - y, w, h)
+    for (let i = 0; i < segments.length && cost < most; i += 4) cost += crosses(segments[i] - x, segments[i + 1] - y, segments[i + 2] - x, segments[i + 3] - y, w, h)
     return cost
   }
 
@@ -119,8 +119,8 @@ class Labels {
     return set
   }
 
-  // On a rim of paper, so that what lies below does not strike it through.
-  typeset({ runs }, x, y, colour) {
+  // On a rim of paper where it covers something, so that this does not strike it through.
+  typeset({ runs }, x, y, colour, covers) {
     const { context, theme } = this.picture
     context.setLineDash(NONE)
     context.textAlign = "left"
@@ -128,7 +128,7 @@ class Labels {
     context.lineWidth = 3
     context.strokeStyle = theme.paper
     context.fillStyle = this.picture.colour(colour)
-    for (const run of runs) {
+    for (const run of covers ? runs : NONE) {
       context.font = run.font
       context.strokeText(run.text, x + run.x, y + run.y)
     }

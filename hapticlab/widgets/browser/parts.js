@@ -17,8 +17,12 @@ const PARTS = {
 
   area(picture, place, { fill, edge }) {
     path(picture, place, true)
-    const [xs, ys] = [0, 1].map((side) => place.filter((_, i) => i % 2 === side))
-    picture.labels.solid(Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys))
+    const box = [Infinity, Infinity, -Infinity, -Infinity]
+    for (let i = 0; i < place.length; i++) {
+      box[i % 2] = Math.min(box[i % 2], place[i])
+      box[2 + (i % 2)] = Math.max(box[2 + (i % 2)], place[i])
+    }
+    picture.labels.solid(...box)
     paint(picture, fill, edge)
   },
 
