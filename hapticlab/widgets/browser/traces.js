@@ -81,7 +81,9 @@ class Traces {
     this.traces.forEach((trace, k) => {
       const series = trace.name === "x" ? [k, this.traces.length + 1] : [k]
       const spans = series.map((each) => this.bins.span(each, Math.ceil(last - this.columns), last))
-      const [low, high] = [Math.min(0, ...spans.map((s) => s.low)), Math.max(0, ...spans.map((s) => s.high))]
+      const zero = this.zoomed ? [] : [0]
+      let [low, high] = [Math.min(...zero, ...spans.map((s) => s.low)), Math.max(...zero, ...spans.map((s) => s.high))]
+      if (low > high) [low, high] = [0, 0]
       if (this.scales[k].reach(low, high, Math.max(this.panel / 20, 2))) this.drawn = -1
       this.drawPanel(trace, k, theme)
     })
@@ -94,6 +96,7 @@ class Traces {
 
   // The moment that stands at the right end of a zoom: where x last rose through its mean, so that a cycle stands still.
   steady(time) {
+    this.drawn = -1 // it may lie before what is drawn
     const cycle = lastCycle(this.samples, "x_true", ZOOM)
     return cycle ? this.samples.at(cycle[1], "t") : time
   }
@@ -157,8 +160,10 @@ class Traces {
   }
 
   drawContact(context, column, theme) {
-    const slot = this.bins.slot(this.traces.length, column)
-    if (this.bins.column[slot] !== column || !this.bins.high[slot]) return
+    const { bins } = this
+    const own = bins.slot(this.traces.length, column)
+    const slot = bins.column[own] === column ? own : bins.previous(this.traces.length, column) // a zoom has columns without a sample
+    if (slot === undefined || column > bins.newest || !bins.high[slot]) return
     context.fillStyle = theme.contact
     for (let k = 0; k < this.traces.length; k++) context.fillRect(column % this.columns, this.top(k), 1, this.panel)
   }
