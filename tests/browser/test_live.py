@@ -2,7 +2,7 @@
 
 import pytest
 from axe import findings
-from lab import ask, command, eventually, grab, picture, until
+from lab import ask, command, eventually, grab, picture, run_cell, see, until
 
 pytestmark = pytest.mark.wide  # the scripts and the silent view beside it always run
 
@@ -236,12 +236,13 @@ def test_it_stops_with_its_last_view_and_when_its_page_is_left(page):
     assert ask(page, "print(view._session.on_view, view._session.motion.running, view._session._thread)") == "False False None"
 
 
-def test_a_kernel_that_was_restarted_is_told_and_nothing_can_be_pressed(lab):
-    page = lab.open("restarted", BEGIN, "view")
+def test_a_kernel_that_was_restarted_is_told_and_nothing_can_be_pressed(page):
+    run_cell(page, "view")
+    page.wait_for_selector(STAGE)
+    see(page, STAGE)
     until(page, STATUS, "Running")
     page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.restart()")
     until(page, STATUS, "kernel")
     assert "Running" not in page.locator(STATUS).text_content()
     assert page.evaluate(GREY) == [True, 0]
     picture(page, "live-5-restarted")
-    page.close()
