@@ -2,7 +2,10 @@
 
 import argparse
 import shutil
+import sys
 import textwrap
+
+from .exits import USAGE, fitted
 
 #: group -> its commands, in the order in which people meet them
 GROUPS = {
@@ -33,7 +36,16 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message):
         """Refuse a wrong command in one line."""
-        self.exit(2, f"hapticlab: {message}. `hapticlab -h` lists the commands\n")
+        self.exit(USAGE, fitted(f"hapticlab: {message}. `hapticlab -h` lists the commands") + "\n")
+
+
+class Command(argparse.ArgumentParser):
+    """The parser of one command."""
+
+    def error(self, message):
+        """Refuse wrong options in lines that fit the terminal."""
+        self.print_usage(sys.stderr)
+        self.exit(USAGE, fitted(f"{self.prog}: error: {message}") + "\n")
 
 
 def _groups(commands):

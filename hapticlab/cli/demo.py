@@ -23,6 +23,7 @@ EXAMPLE = Path(__file__).parents[1] / "examples" / "mass_on_coupler.py"
 PUSH = 2.0
 #: about what a one-axis paddle can move to one side [m]
 TRAVEL = 0.05
+STOPS = f"above {1e3 * TRAVEL:g} mm a real handle would hit its stops; the simulation has none"
 #: illustrative hands, measured on nobody: one that only pushes, one that also holds (mass, damping, stiffness of a pinch)
 HANDS = {
     "push alone": Hand(push=PUSH),
@@ -131,7 +132,10 @@ def report(found):
             for f in found.felt
         ],
         "chatters_below_passivity_limit": bool(below),
-        "sweep": {"points": len(grid.axes["k"]), "duration_s": grid.duration},
+        "sweep": {
+            "points": len(grid.axes["k"]), "duration_s": grid.duration,
+            "largest_amplitude_m": max(float(np.nanmax(f.grid.values)) for f in found.felt),
+        },
         "walls": [report_of(*run) for run in found.walls.values()],
         "own_scene": report_of(*found.own_run),
         "engine": load(found.own_run[0]).name,
@@ -148,18 +152,20 @@ def words(facts):
         "simulated",
         f"         {standing}",
         "",
-        "1. The chapter's wall, F = k x(n) where x(n) >= 0, Eq. (23.1): where does it chatter?",
+        "1. A virtual wall, F = k x(n) where x(n) >= 0, Eq. (23.1): from which stiffness does it chatter?",
         f"  passivity, Eq. (23.10), k < 2 b/T: {facts['passivity']['K_N_per_m']:.4g} N/m, sufficient for any passive hand",
     ]
     for hand in facts["hands"]:
         lines += _hand_words(hand)
     below = "chatter was seen below" if facts["chatters_below_passivity_limit"] else "no simulated wall chattered below"
     swept = facts["sweep"]
-    lines += [f"  {below} the passivity limit ({swept['points']} stiffnesses, {swept['duration_s']:g} s each, both hands)", ""]
+    lines += [f"  {below} the passivity limit ({swept['points']} stiffnesses, {swept['duration_s']:g} s each, both hands)"]
+    largest = swept["largest_amplitude_m"]
+    lines += [f"  the largest oscillation is {1e3 * largest:.3g} mm; {STOPS}"] * (largest > TRAVEL) + [""]
     for run in facts["walls"]:
         lines += [f"  k = {run['parameters']['k']:.4g} N/m, push alone: {run['chatter']['words']}"]
         lines += [f"    {run['energy']['words']}"]
-    lines += ["", "2. A student's own equation of motion (examples/mass_on_coupler.py)"]
+    lines += ["", "2. An equation of motion of your own (examples/mass_on_coupler.py)"]
     lines += ["  " + line for line in describe(own).splitlines()]
     return "\n".join([*lines, "", f"computed in {facts['elapsed_s']:.2f} s (engine: {facts['engine']})"])
 
@@ -202,8 +208,7 @@ def _draw_onset(axes, found):
     axes.set(xlabel="wall stiffness k [N/m]", ylabel=f"amplitude [mm] after {grid.duration:g} s")
     largest = max(np.nanmax(f.grid.values) for f in found.felt)
     if largest > TRAVEL:
-        said = f"above {1e3 * TRAVEL:g} mm a real handle would hit its stops; the simulation has none"
-        axes.axhspan(1e3 * TRAVEL, 2e3 * largest, label=said, **HATCHED)
+        axes.axhspan(1e3 * TRAVEL, 2e3 * largest, label=STOPS, **HATCHED)
         axes.set_ylim(top=2e3 * largest)
     axes.set_title("Where the wall of Eq. (23.1) begins to chatter (no point: no chatter)")
     axes.legend(loc="lower left", bbox_to_anchor=(0.22, 0.02), fontsize="small")

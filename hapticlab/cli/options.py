@@ -11,7 +11,7 @@ from .. import __version__
 from ..compiler.boards.board_records import BOARDS
 from ..grading.formats import FORMATS
 from ..grading.sessions.limits import MIB, Limits
-from .begin import Parser, lab_number
+from .begin import Command, Parser, lab_number
 
 #: `hapticlab tradeoff --targets`, `hapticlab calibrate --only`, `hapticlab grade --sandbox`: names that modules define which take
 #: long to import; a test compares them
@@ -28,7 +28,7 @@ def parser():
     made = Parser(prog="hapticlab")
     made.add_argument("--version", action="version", version=f"hapticlab {__version__}")
     made.set_defaults(command=None, parser=made)
-    commands = made.add_subparsers(title="commands", metavar="COMMAND", parser_class=argparse.ArgumentParser)
+    commands = made.add_subparsers(title="commands", metavar="COMMAND", parser_class=Command)
     shared = argparse.ArgumentParser(add_help=False)
     shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     _add_demo(commands, shared)

@@ -24,7 +24,7 @@ _METHODS = (*sorted(METHODS), Taylor.name, EXACT)
 
 
 def demo(parser, options):
-    """Show where the chapter's wall chatters, and run a student's own scene."""
+    """Show where virtual walls begin to chatter, and run an equation of motion."""
     folder = _folder(options)
     found = demonstration.study(quick=options.quick)
     facts = demonstration.report(found)
