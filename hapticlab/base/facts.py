@@ -83,7 +83,7 @@ def _short(said):
     said = re.sub(r"^(?:[\s,;.]|[<>]=? *\d+|and\b|or\b)+", "", _UNIT.sub("", said))
     first = re.split(r"(?<!e\.g)(?<!Eq)(?<!Eqs)(?<!Fig)[.;:](?:\s|$)", said)[0]
     first = re.sub(r"\s+([,.;:])", r"\1", " ".join(first.split())).strip(" ,")
-    return first[:1].upper() + first[1:] if re.match("[a-z]{3}", first) else first
+    return first[:1].upper() + first[1:] if re.match("[a-z]{3,}( |$)", first) else first
 
 
 def facts(record: Any) -> list[Fact]:

@@ -18,8 +18,6 @@ class Grid:
     columns : dict of str to sequence
     units : dict of str to str
         SI unit of a column; none is needed for a number without unit, or a text.
-    all : str
-        How to see every row.
 
     Examples
     --------
@@ -30,7 +28,6 @@ class Grid:
 
     def __init__(self, columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] | None = None, all: str = "") -> None:
         self.columns, self.units = dict(columns), dict(units or {})
-        self.all = all or "print it to see all."
         numbers = {name: _numbers(values) for name, values in self.columns.items()}
         self._scales = {
             name: shown_unit(found, self.units.get(name, "")) if len(found) else (1.0, "") for name, found in numbers.items()
@@ -67,7 +64,7 @@ class Grid:
         value = value.item() if hasattr(value, "item") and not value.shape else value
         if isinstance(value, float):
             return "" if value != value else short(value * factor)
-        return " ".join(filter(None, in_words(value)))
+        return " ".join(filter(None, in_words(value, self.units.get(name, ""))))
 
     def to_pandas(self) -> Any:
         """The table as a ``pandas.DataFrame`` in SI, whose ``attrs["units"]`` has the units."""

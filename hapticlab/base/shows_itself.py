@@ -118,12 +118,16 @@ class ShowsItself:
                 target.append((fact.name, text, unit, fact.meaning))
         return shown, folded
 
+    def _stands_open(self, grid):
+        """Whether a table is not folded."""
+        return len(grid) <= OPEN
+
     def _body_html(self):
         rows, folded = self._rows()
         tables = [(name, grid) for name, grid in self._tables() if len(grid)]
-        open_ones = [(name, grid) for name, grid in tables if len(grid) <= OPEN or isinstance(self, Tabular)]
-        told = [_fact_table(rows), *(f"{_caption(name)}{grid_html(grid)}" for name, grid in open_ones), _drawn(self._figure)]
-        told += [_folded(f"{_title(one[0])}: {len(one[1])}", grid_html(one[1])) for one in tables if one not in open_ones]
+        told = [_fact_table(rows), "".join(_captioned(*one) for one in tables if self._stands_open(one[1]))]
+        told = [*(reversed(told) if isinstance(self, Tabular) else told), _drawn(self._figure)]
+        told += [_folded_table(*one) for one in tables if not self._stands_open(one[1])]
         told += [_folded("More facts", _fact_table(folded))]
         told += [_folded(title, f"<pre>{escape(text)}</pre>") for title, text in self._details()]
         return "".join(told)
@@ -134,7 +138,10 @@ def _in_one_line(self: ShowsItself) -> str:
 
 
 class Tabular(ShowsItself):
-    """What is first of all a table, which pandas can take over."""
+    """What is first of all a table, which stands before other facts, and which pandas can take over."""
+
+    def _stands_open(self, grid):
+        return len(grid) <= ROWS or not hasattr(self, "plot")
 
     def to_pandas(self) -> Any:
         """The table as a ``pandas.DataFrame`` in SI units, which its ``attrs["units"]`` names; pandas is optional.
@@ -190,21 +197,26 @@ def _fact_table(rows):
     return f'<table style="{_TABLE}"><tbody>{"".join(lines)}</tbody></table>'
 
 
-def grid_html(grid: Grid) -> str:
-    """A table with a head that carries the units, cut to its first rows with a sentence on the rest."""
+def grid_html(grid: Grid, name: str = "") -> str:
+    """A table with a head that carries the units, cut to its first rows with a sentence on where the rest is."""
     heads = "".join(f'<th scope="col" style="{_CELL}">{escape(head)}</th>' for head in grid.heads)
     lines = "".join(f'<tr style="{_ROW}">{"".join(map(_cell, row))}</tr>' for row in grid.rows(ROWS))
-    table = f"<thead><tr>{heads}</tr></thead><tbody>{lines}</tbody>"
-    more = f"<p>The first {ROWS} of {len(grid)} rows; {escape(grid.all)}</p>" if len(grid) > ROWS else ""
-    return f'<table style="{_TABLE}">{table}</table>{more}'
+    table = f'<table style="{_TABLE}"><thead><tr>{heads}</tr></thead><tbody>{lines}</tbody></table>'
+    more = f"<p>The first {ROWS} of {len(grid)} rows; <code>.{escape(name or 'to_pandas()')}</code> has all.</p>"
+    return table + more * (len(grid) > ROWS)
+
+
+def _captioned(name, grid):
+    caption = f'<p style="margin: 0.4em 0 0">{escape(_title(name))}</p>' if name not in ("", "rows") else ""
+    return caption + grid_html(grid, name)
+
+
+def _folded_table(name, grid):
+    return _folded(f"{_title(name) or 'Table'}: {len(grid)} rows", grid_html(grid, name))
 
 
 def _cell(text):
     return f'<td style="{_CELL}">{escape(text)}</td>'
-
-
-def _caption(name):
-    return f'<p style="margin: 0.4em 0 0">{escape(_title(name))}</p>' if name not in ("", "rows") else ""
 
 
 def _title(name):

@@ -62,6 +62,9 @@ class Task(ShowsItself):
     weber: float
     source: str
 
+    def __str__(self) -> str:
+        return f"{self.name}: {self.question} The standard is {self.parameter} = {self.standard:g} {self.unit}"
+
     def on(self, paddle: SimulatedPaddle | SerialPaddle) -> SimulatedPaddle | SerialPaddle:
         """A simulated paddle with the exploring hand on it, unless it has a hand already; a board as it is."""
         if isinstance(paddle, SimulatedPaddle) and paddle.hand is None:

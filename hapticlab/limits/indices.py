@@ -63,6 +63,9 @@ class PassivityIndices(ShowsItself):
     eps: float
     eps_frequency: float
 
+    def _sentence(self):
+        return f"passivity indices of {self.name}: nu = {self.nu:+.4g} N s/m, eps = {self.eps:+.4g} m/(N s)"
+
     def __str__(self) -> str:
         nu = f"short, a damper of {-self.nu:.6g} N s/m beside it pays" if self.nu < 0 else "in excess"
         eps = f"short, a dashpot in line that yields {-self.eps:.6g} m/s a newton pays" if self.eps < 0 else "in excess"
