@@ -55,7 +55,9 @@ def test_a_sweep_is_refused_by_its_version(tmp_path):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand(push=2.0))
     kept = copy(FILES / "walls.sweep", tmp_path)
     before = Path(kept).read_bytes()
-    with pytest.raises(AnalysisError, match=rf"hapticlab: 0\.1\.0 there, {hl.__version__} here.*Name another file, or delete"):
+    with pytest.raises(
+        AnalysisError, match=rf"hapticlab: 0\.1\.0 there, {hl.__version__} here.*Give a different file, or delete"
+    ):
         hl.sweep(hl.wall(), paddle, k=[100.0, 200.0, 400.0], duration=0.3, resume=kept)
     assert Path(kept).read_bytes() == before
 

@@ -17,7 +17,7 @@ def test_one_name_takes_a_unit_with_a_blank():
 
 
 def test_a_sweep_says_which_comes_first():
-    with pytest.raises(hl.HapticlabError, match=r"no scene; .*the scene comes first: hl\.sweep\(scene, paddle, \.\.\.\)"):
+    with pytest.raises(hl.HapticlabError, match=r"is not a scene; .*the scene comes first: hl\.sweep\(scene, paddle, \.\.\.\)"):
         hl.sweep(PADDLE, hl.wall(), k=[100, 200])
 
 

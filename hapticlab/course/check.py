@@ -92,7 +92,7 @@ def check(name: str, answer: object) -> CheckResult:
     except CourseError as problem:
         result = _failed(name, str(problem))
     except Exception as problem:  # a mistake of a lab's author stops no student
-        result = _failed(name, f"the check itself failed, which is no fault of yours: {type(problem).__name__}: {problem}")
+        result = _failed(name, f"the check itself failed, which is not your mistake: {type(problem).__name__}: {problem}")
     own = of_call()
     if own and result.answered and not result.passed and (lost := swallowed(own, "")):
         result = _with_rows(result, ("in your line", lost))
@@ -175,10 +175,10 @@ def _noted(name, exercise, answer):
     if outcome.problem:
         return CheckResult(name, False, True, (), Card(name, "wrong", outcome.problem))
     if words < exercise.least_words:
-        said = f"{words} words, needs at least {exercise.least_words}: {exercise.asks}"
+        said = f"{words} words; needs at least {exercise.least_words}: {exercise.asks}"
         return CheckResult(name, False, True, (), Card(name, "wrong", said))
-    later = {"prediction": "noted; compare it with what you find", "text": f"{words} words noted; a person reads them"}
-    said = later.get(exercise.kind, "noted; it is judged when handed in")
+    later = {"prediction": "saved; compare it with your result", "text": f"{words} words saved; a person reads them"}
+    said = later.get(exercise.kind, "saved; it is checked when you hand it in")
     return CheckResult(name, True, True, (), Card(name, "saved", said))
 
 

@@ -53,7 +53,9 @@ def with_constants(sources, numbers, where):
     for name, value in numbers.items():
         here = [(number, node.value) for number, node, (its_name, _) in places if its_name == name]
         if len(here) != 1:
-            raise CourseError(f"{where} has {len(here)} lines {name} = number at its top level; it needs one, for {value!r}")
+            raise CourseError(
+                f"{where} has {len(here)} lines {name} = number at its top level; it needs exactly one, for {value!r}"
+            )
         number, old = here[0]
         line = lines[number][old.lineno - 1]
         lines[number][old.lineno - 1] = line[: old.col_offset] + repr(value).encode() + line[old.end_col_offset :]

@@ -8,24 +8,24 @@ import numpy as np
 SQUARED = "Was a value in millimetres or milliseconds squared? Convert it to SI units first."
 #: what a result is often off by, and what that says
 FACTORS = (
-    (-1.0, "The sign is turned."),
-    (1e3, "It is 1000 times too large: is something in millimetres or milliseconds that belongs in SI?"),
-    (1e-3, "It is 1000 times too small: is something in millimetres or milliseconds that belongs in SI?"),
+    (-1.0, "The sign is wrong."),
+    (1e3, "It is 1000 times too large: is a value in millimetres or milliseconds instead of SI units?"),
+    (1e-3, "It is 1000 times too small: is a value in millimetres or milliseconds instead of SI units?"),
     (1e6, f"It is 1000000 times too large. {SQUARED}"),
     (1e-6, f"It is 1000000 times too small. {SQUARED}"),
-    (100.0, "It is 100 times too large: percent where a share of one is asked for, or centimetres?"),
-    (-1e3, "The sign is turned, and it is 1000 times too large: millimetres?"),
-    (-1e-3, "The sign is turned, and it is 1000 times too small: millimetres?"),
-    (180 / math.pi, "It is in degrees; radians are asked for."),
-    (math.pi / 180, "It is too small by pi/180: an angle in radians was taken for degrees."),
-    (2 * math.pi, "It is 2 pi times too large: Hz and rad/s are mixed."),
-    (1 / (2 * math.pi), "It is 2 pi times too small: Hz and rad/s are mixed."),
-    (2.0, "It is twice what is expected: is a half missing, or a factor 2 there that does not belong?"),
-    (0.5, "It is half of what is expected: is a factor 2 missing, or a half there that does not belong?"),
+    (100.0, "It is 100 times too large: is it in percent instead of a fraction of one, or in centimetres?"),
+    (-1e3, "The sign is wrong, and the value is 1000 times too large: is it in millimetres?"),
+    (-1e-3, "The sign is wrong, and the value is 1000 times too small: is a length in millimetres?"),
+    (180 / math.pi, "It is in degrees, but radians are expected."),
+    (math.pi / 180, "It is too small by pi/180: an angle in radians was treated as degrees."),
+    (2 * math.pi, "It is 2 pi times too large: Hz and rad/s are mixed up."),
+    (1 / (2 * math.pi), "It is 2 pi times too small: Hz and rad/s are mixed up."),
+    (2.0, "It is twice as large as expected: is a factor 1/2 missing, or is there a factor 2 too many?"),
+    (0.5, "It is half as large as expected: is a factor 2 missing, or is there a factor 1/2 too many?"),
 )
 #: how near a wrong number must come to such a factor, or to a slip of the case; of several slips the exact one speaks
 EXACT, NEAR = 1e-6, 1e-3
-PULLS = "The sign is turned: your force pulls. F_e is the force ON the environment, positive into it, Eq. (23.1)."
+PULLS = "The sign is wrong: your force pulls. F_e is the force ON the environment, positive into it, Eq. (23.1)."
 
 
 def slip(exercise, case, wanted, got):
@@ -46,7 +46,7 @@ def slip(exercise, case, wanted, got):
     'It is 1000 times too large: is'
     """
     if not np.isfinite(got).all():
-        return "NaN (no number) or infinity comes of 0/0, of the root of a negative number, or of too large a number."
+        return "NaN (not a number) or infinity comes from 0/0, from the root of a negative number, or from too large a number."
     for near in (EXACT, NEAR):
         if sentence := known(exercise, case, got, near):
             return sentence
@@ -86,7 +86,7 @@ def _nearly(wanted, got, given):
     if not _close(wanted, got, 1e-2):
         return ""
     has_g = any("g" in names for names in (given, *given.values()) if isinstance(names, dict))
-    other = "is g another, such as 9.8 for 9.81 m/s^2" if has_g else "is a small term missing"
+    other = "is your g different, such as 9.8 instead of 9.81 m/s^2" if has_g else "is a small term missing"
     return f"It is within one percent: is a number rounded, or {other}?"
 
 
@@ -101,7 +101,7 @@ def _given_by_chance(given, factor):
         if math.isclose(one**power, abs(factor), rel_tol=NEAR) and abs(factor) != 1:
             symbol = name if abs(power) == 1 else f"{name}^2"
             number = f"{one ** abs(power):g}"
-            return f" In this case {symbol} = {number}, so a factor {symbol} may also be missing or not belong there."
+            return f" In this case {symbol} = {number}, so a factor {symbol} may also be missing, or there may be one too many."
     return ""
 
 
@@ -157,7 +157,7 @@ def _factor(at, wanted, got):
         return ""
     ratio = got[there] / wanted[there]
     if _constant(ratio):
-        return f"It is {ratio.mean():.4g} times what is expected, at every point."
+        return f"It is {ratio.mean():.4g} times the expected value, at every point."
     for power, name in itertools.product((1, -1, 2, -2), at):
         column = at[name][there]
         if not column.all() or _constant(column):
@@ -172,13 +172,13 @@ def _too_often(name, power):
     symbol = name if abs(power) == 1 else f"{name}^{abs(power)}"
     if power > 0:
         return f"It is {symbol} times too large, so its unit is wrong: should it be divided by {symbol}?"
-    return f"It lacks a factor {symbol}, so its unit is wrong: is it divided by {symbol}, or not multiplied?"
+    return f"A factor {symbol} is missing, so its unit is wrong: did you divide by {symbol}, or forget to multiply by it?"
 
 
 def _beside(factor):
     if abs(factor - 1) < NEAR:
         return ""
-    return " The sign is turned, too." if abs(factor + 1) < NEAR else f" Beside that it is {factor:.4g} times too large."
+    return " The sign is also wrong." if abs(factor + 1) < NEAR else f" In addition, it is {factor:.4g} times too large."
 
 
 def _constant(ratio):
@@ -193,10 +193,10 @@ def _one_side(wanted, got):
     right = np.isclose(got, wanted, rtol=NEAR, atol=1e-9 * np.abs(wanted).max())
     if right[~outside].all() and not right[outside].all():
         missing = "is a condition missing or too wide? A scene writes it hl.when(condition, force, 0)."
-        return f"It is right where something acts, and not zero where nothing does: {missing}"
+        return f"It is right where the force should act, but not zero where no force should act: {missing}"
     if not got[~outside].any():
-        turned = "its condition is turned round, such as <= for >=."
-        return f"It acts where nothing should, and is zero where something should: {turned}"
+        turned = "its condition is reversed, such as <= instead of >=."
+        return f"It acts where no force should act, and is zero where a force should act: {turned}"
     if right[outside].all() and not got[~outside].all():
-        return "It is zero at points where something acts: is its condition too narrow?"
+        return "It is zero at points where a force should act: is its condition too narrow?"
     return ""

@@ -53,7 +53,7 @@ def evaluate(kind: Kind, answer: object, given: Mapping[str, Any]) -> Outcome:
     >>> evaluate("function", lambda x, k: k * x, {"x": 0.012, "k": 200.0})
     Outcome(value=2.4, problem='', printed='')
     >>> evaluate("function", lambda position: 200 * position, {"x": 0.012}).problem
-    'it takes (position), and is called with x=; keep the names of the notebook'
+    'it takes (position), but is called with x=; keep the argument names of the notebook'
     >>> evaluate("value", None, {}).answered
     False
     """
@@ -153,7 +153,9 @@ def _mismatch(function, given):
         return ""
     except TypeError:
         called = ", ".join(f"{name}=" for name in given) or "no argument"
-        return f"it takes ({', '.join(signature.parameters)}), and is called with {called}; keep the names of the notebook"
+        return (
+            f"it takes ({', '.join(signature.parameters)}), but is called with {called}; keep the argument names of the notebook"
+        )
 
 
 def _raised(problem):

@@ -40,8 +40,8 @@ class Case:
 
     Examples
     --------
-    >>> Case({"x": 0.012, "k": 200.0}, 2.4, unit="N", slips={-2.4: "The sign is turned."}).slips
-    ((-2.4, 'The sign is turned.'),)
+    >>> Case({"x": 0.012, "k": 200.0}, 2.4, unit="N", slips={-2.4: "The sign is wrong."}).slips
+    ((-2.4, 'The sign is wrong.'),)
     """
 
     given: Mapping[str, Any]
@@ -107,10 +107,10 @@ class Exercise:
         if not self.name.isidentifier():
             raise CourseError(f"exercise {self.name!r}: needs the name of a Python variable, such as 'wall_force'")
         if not self.judged and (self.points or self.cases):
-            raise CourseError(f"{self.name}: a {self.kind} is noted, not judged; leave out points and cases")
+            raise CourseError(f"{self.name}: a {self.kind} is saved, not marked; leave out points and cases")
         strange = [c.expected for c in self.cases if self.kind == "choice" and c.expected not in self.options]
         if strange:
-            raise CourseError(f"{self.name}: {strange[0]!r} is none of the options {', '.join(self.options)}")
+            raise CourseError(f"{self.name}: {strange[0]!r} is not one of the options {', '.join(self.options)}")
 
     @property
     def judged(self) -> bool:
@@ -150,7 +150,7 @@ class Lab:
         names = [e.name for e in self.exercises]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise CourseError(f"lab {self.number}: {', '.join(twice)} twice; each exercise needs a name of its own")
+            raise CourseError(f"lab {self.number}: {', '.join(twice)} appears twice; each exercise needs a name of its own")
 
     @property
     def points(self) -> float:

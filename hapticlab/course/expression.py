@@ -67,7 +67,9 @@ def values(answer, at, solve_for=()):
     held = [_held(residual, [*at, *names]) for residual in residuals]
     missing = [name for name in names if not any(name in one.values() for one in held)]
     if missing:
-        raise NotPlain(f"{missing[0]} is not in it; needs an equation of motion, such as sp.Eq(..., ...) with {missing[0]}")
+        raise NotPlain(
+            f"it does not contain {missing[0]}; needs an equation of motion, such as sp.Eq(..., ...) with {missing[0]}"
+        )
     solved = np.transpose([_solution(list(zip(residuals, held, strict=True)), point, names) for point in points]).tolist()
     return solved[0] if isinstance(solve_for, str) else dict(zip(names, solved, strict=True))
 
@@ -109,7 +111,7 @@ def _has_unit(node):
 def _expression(answer):
     """Return an answer as an expression, samples of the past as such."""
     if isinstance(answer, sp.Eq):
-        raise NotPlain("it is an equation; needs an expression alone, what stands right of the = sign")
+        raise NotPlain("it is an equation; needs an expression only, the right side of the equation")
     if isinstance(answer, int | float) and not isinstance(answer, bool):
         return sp.Float(answer)
     if not isinstance(answer, sp.Expr):
@@ -124,7 +126,9 @@ def _residual(equation):
     if isinstance(equation, sp.Eq):
         return _expression(equation.lhs) - _expression(equation.rhs)
     if equation in (True, False):
-        raise NotPlain(f"it is an equation that is always {bool(equation)}: both sides hold the same, or numbers alone")
+        raise NotPlain(
+            f"it is an equation that is always {bool(equation)}, because both sides are the same or contain only numbers"
+        )
     if not isinstance(equation, sp.Expr):
         raise NotPlain(f"it is {a(equation)}, needs an equation, sp.Eq(..., ...)")
     return _expression(equation)
@@ -165,7 +169,7 @@ def _held(expression, allowed):
     texts = {node: spelling(node) for node in symbols(expression) if node not in bound}
     strange = sorted({text for text in texts.values() if text not in allowed})
     if strange:
-        raise NotPlain(f"it holds {', '.join(strange)[:200]}; it may hold {', '.join(allowed)}")
+        raise NotPlain(f"it contains {', '.join(strange)[:200]}; it may contain {', '.join(allowed)}")
     return texts
 
 
@@ -177,7 +181,7 @@ def _worth(expression, held, point):
     try:
         value = complex(found)
     except (TypeError, OverflowError):
-        raise NotPlain(f"it is no number at {where}: {str(found)[:60]}") from None
+        raise NotPlain(f"it is not a number at {where}: {str(found)[:60]}") from None
     if not np.isfinite(value):
         raise NotPlain(f"it has no finite value at {where}: is something divided by zero there?")
     if abs(value.imag) > STRAIGHT * abs(value):
@@ -205,4 +209,4 @@ def _solution(equations, point, names):
     try:
         return np.linalg.solve(slopes, -offset)
     except np.linalg.LinAlgError:
-        raise NotPlain(f"it cannot be solved for {', '.join(names)}: that falls out of it") from None
+        raise NotPlain(f"it cannot be solved for {', '.join(names)}, which cancels") from None

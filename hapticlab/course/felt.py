@@ -66,7 +66,7 @@ def felt(
     check_scene(scene)
     strange = sorted(set(options) - set(OPTIONS))
     if strange:
-        raise CourseError(f"{', '.join(strange)} given; a scene is run with x, v, T, values, channels, {', '.join(OPTIONS)}")
+        raise CourseError(f"{', '.join(strange)} given; a scene runs with x, v, T, values, channels, {', '.join(OPTIONS)}")
     velocity = "backward_difference" if v is None else "measured"
     bound = scene(**(values or {}))
     program = compile(bound, T=T, dtype="float64", velocity=velocity, live=(), **options)
@@ -79,5 +79,5 @@ def felt(
         return named["F"]
     missing = [name for name in channels if name not in named]
     if missing:
-        raise CourseError(f"the scene does not watch {', '.join(missing)}; add watch=[...]; it has {', '.join(named)}")
+        raise CourseError(f"the scene does not watch {', '.join(missing)}; it watches {', '.join(named)}. Add watch=[...]")
     return {name: named[name] for name in ("F", *channels)}

@@ -36,7 +36,7 @@ def check_tree(tree: File) -> None:
     """Refuse a folder without any answers; its folders are named as the labs are, NN_name."""
     if not any(Path(tree).glob(f"[0-9][0-9]_*/{SOLUTION}")):
         raise CourseError(
-            f"{tree} holds no NN_name/{SOLUTION}; name the folder of an instructor's answers, tests/instructor of a checkout"
+            f"{tree} contains no NN_name/{SOLUTION}; give the folder of an instructor's answers, tests/instructor of a checkout"
         )
 
 

@@ -49,7 +49,7 @@ def judge(exercise: Exercise, case: Case, value: Any) -> Verdict:
     >>> judge(force, Case({}, 2.25, unit="N"), 2.25)
     Verdict(right=True, words='2.25 N', slip='')
     >>> judge(force, Case({}, 2.25, unit="N"), -2.25)
-    Verdict(right=False, words='-2.25 N, expected 2.25 N. The sign is turned.', slip='The sign is turned.')
+    Verdict(right=False, words='-2.25 N, expected 2.25 N. The sign is wrong.', slip='The sign is wrong.')
     """
     expected, hidden = case.expected, exercise.kind in ("value", "choice")
     if exercise.kind == "plot":

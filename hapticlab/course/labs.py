@@ -72,7 +72,7 @@ def labs_folder() -> Path:
     for place in PLACES:
         if place.is_dir():
             return place
-    raise CourseError(f"no labs in {' or '.join(map(str, PLACES))}; install hapticlab anew")
+    raise CourseError(f"no labs in {' or '.join(map(str, PLACES))}; install hapticlab again")
 
 
 def copy_labs(target: File, only: Sequence[str] = ()) -> dict[str, str]:
@@ -107,15 +107,15 @@ def copy_labs(target: File, only: Sequence[str] = ()) -> dict[str, str]:
         raise CourseError(f"{target} is a file; name a folder for the labs")
     if source.resolve() in (target.resolve(), *target.resolve().parents):
         inside = "" if target.resolve() == source.resolve() else "inside the folder "
-        raise CourseError(f"{target} is {inside}where the labs come from; name another, for your own copy")
+        raise CourseError(f"{target} is {inside}the folder that the labs come from; give a different folder for your own copy")
     left_out = {lab.name for lab in find_labs(source)} - _chosen(target, only)
     paths = [path for path in _files(source) if path.parts[0] not in left_out]
     try:
         return _copied_all(source, target, paths)
     except OSError as problem:
         raise CourseError(
-            f"cannot write {problem.filename or target}: {problem.strerror or problem}; what came before it is copied. Name a "
-            "folder of your own, such as: hapticlab labs my-labs"
+            f"cannot write {problem.filename or target}: {problem.strerror or problem}; the files before it are copied. "
+            "Give a folder of your own, such as: hapticlab labs my-labs"
         ) from None
 
 

@@ -179,13 +179,13 @@ def own_numbers(lab, folder, seed, student):
         raise CourseError(f"{path}: numbers failed: {type(problem).__name__}: {problem}") from problem
     strange = [name for name, value in drawn.items() if type(value) not in (int, float) or not math.isfinite(value)]
     if strange:
-        raise CourseError(f"{path}: numbers gives {strange[0]} = {drawn[strange[0]]!r}; it needs a finite number")
+        raise CourseError(f"{path}: numbers returns {strange[0]} = {drawn[strange[0]]!r}; it needs a finite number")
     return drawn
 
 
 def _drawn(several):
     if not callable(several):
-        raise TypeError("each exercise needs a function, 'exercise': lambda: [given, ...]; then it draws by itself")
+        raise TypeError("each exercise needs a function of its own, 'exercise': lambda: [given, ...]")
     return several()
 
 

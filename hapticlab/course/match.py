@@ -34,7 +34,7 @@ def plot_fault(expected, found, rtol, atol):
     --------
     >>> line = {"x": [0.0, 0.01], "y": [0.0, 2.0], "x_unit": "m", "y_unit": "N"}
     >>> plot_fault({"curve 1": line}, {"curve 1": line | {"y": [0.0, -2.0]}}, 1e-3, 0.0)
-    ('curve 1 is not there', 'Along y: The sign is turned.')
+    ('curve 1 is not there', 'Along y: The sign is wrong.')
     """
     curves = [curve for curve in map(_arrays, found.values() if isinstance(found, dict) else ()) if curve]
     if not curves:
@@ -45,7 +45,10 @@ def plot_fault(expected, found, rtol, atol):
             slip = next((said for curve in curves if (said := _mixed_up(wanted, curve, rtol, atol))), "")
             return _difference(name, wanted, curves, len(expected), slip, _band(wanted, rtol, atol)), slip
     guesses = sum(_is_guess(list(asked.values()), curve, rtol, atol) for curve in curves)
-    many = f"{guesses} curve{'s' * (guesses > 1)} too many: leave out what is not asked for, and make a new figure in each call"
+    many = (
+        f"{guesses} curve{'s' * (guesses > 1)} too many. Plot only the curves that are asked for, and make a new figure "
+        "in each call"
+    )
     return many if guesses else "", ""
 
 
@@ -168,7 +171,7 @@ def _mixed_up(wanted, curve, rtol, atol):
     for side in "yx":
         for factor, sentence in FACTORS:
             if _fits(wanted, curve | {side: curve[side] / factor}, rtol, atol):
-                label = " Is the unit in its label that of its numbers?" if abs(factor) in (1e3, 1e-3) else ""
+                label = " Does the unit in its label match its numbers?" if abs(factor) in (1e3, 1e-3) else ""
                 return f"Along {side}: {sentence}{label}"
     return ""
 
@@ -196,11 +199,11 @@ def _distance(name, wanted, curve, band):
     x_unit, y_unit = ("" if unit == "1" else f" {unit}" for unit in (wanted["x_unit"], wanted["y_unit"]))
     if _missing(wanted, curve):
         ends = [f"from {c['x'].min():.6g} to {c['x'].max():.6g}{x_unit}" for c in (curve, wanted)]
-        return f"{name} goes {ends[0]}, needs {ends[1]}"
+        return f"{name} goes {ends[0]}; needs {ends[1]}"
     coarse = _is_coarse(wanted, curve)
     x, expected, got = (_where_drawn if coarse else _where_asked)(wanted, curve)
     if coarse and _near(expected, got, band):
         apart, most = _widest(wanted, curve), WIDEST * np.ptp(wanted["x"])
-        return f"{name} has points up to {apart:.3g}{x_unit} apart, needs more of them, {most:.3g}{x_unit} apart at most"
+        return f"{name} has points up to {apart:.3g}{x_unit} apart; needs more points, at most {most:.3g}{x_unit} apart"
     worst = int(np.argmax(np.abs(got - expected)))
     return f"at {x[worst]:.6g}{x_unit} it is {got[worst]:.6g}{y_unit}, expected {expected[worst]:.6g}{y_unit}"

@@ -30,7 +30,7 @@ def read(path):
         notebook = json.loads(Path(path).read_text("utf-8"))
         notebook["cells"]
     except (ValueError, KeyError, TypeError):
-        raise CourseError(f"{path} is no notebook; it needs the JSON that Jupyter writes") from None
+        raise CourseError(f"{path} is not a notebook; it needs the JSON that Jupyter writes") from None
     return notebook
 
 

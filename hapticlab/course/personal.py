@@ -104,7 +104,9 @@ def personal_labs(students, folder, tree, seed=0, only=(), labs=None):
     states, names = {}, [_folder_name(student) for student in dict.fromkeys(students)]
     alike = {name.casefold(): name for name in names}
     if len(alike) != len(names):
-        raise CourseError(f"two of the {len(names)} students differ in capitals alone; each needs a folder's name of their own")
+        raise CourseError(
+            f"two of the {len(names)} students have names that differ only in capitals; each needs a folder name of their own"
+        )
     for student in names:
         for lab in chosen:
             for path, content in _files(lab, Path(tree) / lab.name, seed, student).items():
@@ -156,10 +158,10 @@ def foreign_numbers(cells, folder, answers, seed, student, personal=True):
     name = foreign[0]
     found = f"{name} = {written[name][0]:.15g} in the notebook, and {who} {needed[name]:.15g}"
     if not personal:
-        return f"{found}: it was handed out with numbers of its student's own? then grade it by --personal and the same --seed"
+        return f"{found}. If it was handed out with personal numbers, grade it with --personal and the same --seed"
     if written[name][0] == came.get(name):
         return f"{found}: it is the notebook that came with the lab, not the one handed out to this student"
-    return f"{found}: it was handed out by another seed, or to another name"
+    return f"{found}: it was handed out with a different seed, or to a different name"
 
 
 def _written(name, cells):
@@ -187,8 +189,8 @@ def _folder_name(student):
     """Return a student's name where it can be a folder's."""
     if NO_FOLDER.fullmatch(student) or not student.isprintable():
         raise CourseError(
-            f"student {student!r} can name no folder; take a login or a number, without slashes, signs such as : * ? and "
-            "without a dot or a space at either end"
+            f"student {student!r} cannot be the name of a folder. Use a login or a number, without slashes, without signs "
+            "such as : * ? and without a dot or a space at either end"
         )
     return student
 

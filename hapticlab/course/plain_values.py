@@ -11,7 +11,7 @@ MOST_NUMBERS = 1_000_000
 
 
 class NotPlain(HapticlabError):
-    """Why an answer is no plain value; said to the student as it is."""
+    """Why an answer is not a plain value; said to the student as it is."""
 
 
 def plain(value):
@@ -36,7 +36,7 @@ def plain(value):
     try:
         return float.__float__(float(value))
     except (TypeError, ValueError, OverflowError):
-        raise NotPlain(f"{a(value)} is no number; needs a number, or an array of them{_symbols(value)}") from None
+        raise NotPlain(f"{a(value)} is not a number; needs a number, or an array of numbers{_symbols(value)}") from None
 
 
 def in_base_units(value):
@@ -60,7 +60,7 @@ def numbers(value):
         if array.dtype.kind == "O":
             array = np.array([in_base_units(part) for part in array.flat], float).reshape(array.shape)
     except (TypeError, ValueError):
-        raise NotPlain("its parts are not all numbers, or its rows not equally long; needs an array of numbers") from None
+        raise NotPlain("its parts are not all numbers, or its rows have different lengths; needs an array of numbers") from None
     if array.dtype.kind not in "biuf":
         raise NotPlain(f"it is an array of {array.dtype.name}; needs an array of real numbers")
     if array.size > MOST_NUMBERS:
@@ -76,4 +76,4 @@ def a(value):
 
 def _symbols(value):
     names = sorted(map(str, getattr(value, "free_symbols", ())))
-    return f"; it still holds {', '.join(names)}: put numbers in" if names else ""
+    return f"; it still contains {', '.join(names)}: substitute numbers" if names else ""

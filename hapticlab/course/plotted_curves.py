@@ -49,9 +49,9 @@ def curves(answer):
     """
     found = [curve for axes in _axes(answer) for curve in _of_axes(axes)]
     if not found:
-        raise NotPlain("it holds no curve; draw one with axes.plot(...)")
+        raise NotPlain("it contains no curve; draw one with axes.plot(...)")
     if len(found) > MOST_CURVES:
-        raise NotPlain(f"it holds {len(found)} curves; needs {MOST_CURVES} at most")
+        raise NotPlain(f"it contains {len(found)} curves; needs at most {MOST_CURVES}")
     return {f"curve {number}": curve for number, curve in enumerate(found, start=1)}
 
 

@@ -123,20 +123,20 @@ def _changes(expressions):
     for node in sorted({symbol for one in expressions for symbol in symbols(one)}, key=spelling):
         name = spelling(node)
         if isinstance(node, sp.Symbol):
-            yield f"You forgot {name}: it is what comes with {name} = 0.", {node: sp.S.Zero}
+            yield f"You forgot {name}: your answer is the result with {name} = 0.", {node: sp.S.Zero}
         elif n in node.free_symbols:
             late = node.xreplace({n: n - 1})
-            yield f"{spelling(late)} stands where {name} belongs.", {node: late}
+            yield f"You wrote {spelling(late)} instead of {name}.", {node: late}
     for node in nodes:
         if isinstance(node, sp.Add):
             yield from _of_sum(node)
         elif type(node) in ROUND:
-            yield "The condition is turned round.", {node: ROUND[type(node)](*node.args)}
+            yield "The condition is reversed.", {node: ROUND[type(node)](*node.args)}
             yield "The condition is missing: it acts everywhere.", {node: sp.true}
         elif isinstance(node, sp.sin | sp.cos | sp.tan):
             (angle,) = node.args
-            yield "An angle in radians was taken for degrees.", {node: node.func(angle * sp.pi / 180)}
-            yield "An angle is in degrees; radians belong there.", {node: node.func(angle * 180 / sp.pi)}
+            yield "An angle in radians was treated as degrees.", {node: node.func(angle * sp.pi / 180)}
+            yield "An angle is in degrees, but it must be in radians.", {node: node.func(angle * 180 / sp.pi)}
             if not isinstance(node, sp.tan):
                 yield "sin and cos are swapped.", {node: (sp.cos if isinstance(node, sp.sin) else sp.sin)(angle)}
 
@@ -145,5 +145,5 @@ def _of_sum(total):
     for term in total.args:
         held = ", ".join(sorted({spelling(symbol) for symbol in symbols(term)}))
         if held:
-            yield f"The sign of the term with {held} is turned.", {total: total - 2 * term}
+            yield f"The sign of the term with {held} is wrong.", {total: total - 2 * term}
             yield f"The term with {held} is missing.", {total: total - term}

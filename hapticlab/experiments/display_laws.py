@@ -137,7 +137,7 @@ def growth(paddle, display):
 def _resting(paddle):
     """A handle without friction and noise, its hand at rest at x = 0, and that hand."""
     if paddle.hand is None:
-        raise PaddleError("a display is felt by a hand; give hl.SimulatedPaddle(..., hand=hl.Hand('grip'))")
+        raise PaddleError("a display needs a hand that feels it. Give hl.SimulatedPaddle(..., hand=hl.Hand('grip'))")
     hand = replace(paddle.hand, intent=None, push=0.0, push_noise=0.0)
     return Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0)), hand
 

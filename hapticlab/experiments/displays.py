@@ -71,7 +71,7 @@ class Rendered(ShowsItself):
         rubs = f"{self.friction:.3g} N friction" if self.friction > self.misfit else f"friction below {self.misfit:.2g} N"
         return (
             f"{self.display:<11} {self.wanted:8.4g} N/m: felt {self.k:.4g} N/m{ringing}; free: {1e3 * self.mass:.4g} g, "
-            f"{self.damping:.3g} N s/m{' (it drives the hand)' if self.damping < 0 else ''}, {rubs}; told to {self.misfit:.2g} N"
+            f"{self.damping:.3g} N s/m{' (it drives the hand)' if self.damping < 0 else ''}, {rubs}; fit to {self.misfit:.2g} N"
         )
 
 

@@ -190,7 +190,7 @@ def fitts(
     check_held(paddle, "fitts")
     pairs = [(float(d), float(w)) for d in distances for w in widths if d > w > 0]
     if len(pairs) < 2 or movements < 3:
-        raise AnalysisError(f"{len(pairs)} pairs with distance > width > 0, {movements} movements; needs 2 and 3 at least")
+        raise AnalysisError(f"{len(pairs)} pairs with distance > width > 0, {movements} movements; needs at least 2 and 3")
     empty = Scene(parameters("k_0", units="N/m", values=0) * x(n), name="empty handle")
     done = []
     for number, (distance, width) in enumerate(pairs):
@@ -208,8 +208,9 @@ def _between(paddle, scene, distance, width, movements, scatter, reaction, seed)
     found = selections(log.t, x, distance, width)
     if len(found) < movements + 1:
         raise AnalysisError(
-            f"{len(found) - 1} of {movements} movements over {1e3 * distance:g} mm to {1e3 * width:g} mm in {log.t[-1]:.3g} s; "
-            f"the target was missed on and on. Needs a wider target, a smaller scatter, or a scene that pushes less: {scene.name}"
+            f"{len(found) - 1} of {movements} movements over {1e3 * distance:g} mm to {1e3 * width:g} mm in {log.t[-1]:.3g} "
+            "s, because the target was missed repeatedly. Give a wider target, a smaller scatter, or a scene that pushes "
+            f"less than {scene.name}"
         )
     found = found[: movements + 1]
     times = tuple(entered - left for (_, left, _), (entered, _, _) in zip(found[:-1], found[1:], strict=True))

@@ -112,7 +112,7 @@ class ForcedChoice(Tabular):
             held = json.loads(Path(path).read_text(encoding="utf-8"))
             return cls(**{**held, "trials": tuple(Trial(**t) for t in held["trials"])})
         except (KeyError, TypeError, ValueError) as problem:
-            raise AnalysisError(f"{path} is no experiment ({problem}); needs a file of result.save()") from None
+            raise AnalysisError(f"{path} is not an experiment ({problem}); needs a file that result.save() wrote") from None
 
     def plot(self) -> Figure:
         """Draw the level of each trial, filled where the answer was right, and the threshold."""
@@ -189,7 +189,7 @@ def forced_choice(
         raise AnalysisError(f"observer = {observer!r}; needs hl.people.SimulatedObserver(weber=...) or a Person")
     procedure = procedure or UpDown(first=math.log(2))
     if procedure.done:
-        raise AnalysisError("the procedure has had all its answers already; make a fresh one")
+        raise AnalysisError("the procedure already has all its answers; make a new one")
     paddle, rng, trials, stopped = task.on(paddle), np.random.default_rng(seed), list[Trial](), None
     show = task.presenter(paddle, **options)
     with _table(keep, task) as row:

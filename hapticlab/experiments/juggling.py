@@ -73,7 +73,7 @@ class Juggle(ShowsItself):
             return f"{head}; the ball was lost"
         return (
             f"{head}, heights off by {100 * self.error:.3g} % rms, time between impacts irregular by "
-            f"{100 * self.irregularity:.3g} %, {self.growth:+.2f} of an error left a flight later"
+            f"{100 * self.irregularity:.3g} %, {self.growth:+.2f} of an error remains one flight later"
         )
 
     def plot(self) -> Figure:

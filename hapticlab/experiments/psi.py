@@ -100,7 +100,7 @@ class Psi(ShowsItself):
     ) -> None:
         if not (0 < low < high and most_trials >= 1):
             raise AnalysisError(
-                f"low = {low:g}, high = {high:g}, most_trials = {most_trials}; psi needs 0 < low < high and a trial"
+                f"low = {low:g}, high = {high:g}, most_trials = {most_trials}; psi needs 0 < low < high and at least one trial"
             )
         if shape not in ("d_prime", "weibull"):
             raise AnalysisError(f"shape = {shape!r}; psi needs 'd_prime' or 'weibull', whose levels are positive")
@@ -163,7 +163,7 @@ class ConstantLevels(ShowsItself):
 
     def __init__(self, levels: Sequence[float] | Array, *, repeats: int, seed: int = 0) -> None:
         if not (len(levels) and repeats >= 1):
-            raise AnalysisError(f"{len(levels)} levels, {repeats} times; needs one of each at least")
+            raise AnalysisError(f"{len(levels)} levels, {repeats} times; needs at least one of each")
         levels = [float(a) for a in levels]
         self.order = np.random.default_rng(seed).permutation(np.repeat(levels, repeats)).tolist()
         self.told, self._words = 0, f"{len(levels)} levels, {repeats} times each"

@@ -83,7 +83,7 @@ class PsychometricFit(ShowsItself):
             at, (low, high) = self.curve.threshold, self.interval["threshold"]
             axes.errorbar([at], [float(self.curve(at))], xerr=[[max(at - low, 0)], [max(high - at, 0)]], fmt="s", capsize=4,
                           color=WARM, label=f"threshold, {100 * self.confidence:g} % interval")  # fmt: skip
-            axes.set(xlabel=f"level [{unit}]", ylabel="part of right answers", ylim=(-0.05, 1.05))
+            axes.set(xlabel=f"level [{unit}]", ylabel="proportion of right answers", ylim=(-0.05, 1.05))
             figure.legend(loc="outside upper center", ncols=2)
         return figure
 
@@ -214,10 +214,13 @@ def _left_open(q, ends, fitting):
     for name, at, (low, high), least, most in zip(("threshold", "slope"), q, ends, fitting.low, fitting.high, strict=False):
         near = 1e-6 * (most - least)
         if min(at - least, most - at) < near:  # never of what is fixed
-            notes.append(f"the {name} is at the end of what was looked for: these levels do not tell it")
+            notes.append(f"the {name} is at the end of the range that was searched, so these levels do not determine it")
         elif min(low - least, most - high) < near:
             way = "below" if low - least < near else "above"
-            notes.append(f"the interval of the {name} ends where the search does: these levels do not bound it {way}")
+            notes.append(
+                f"the interval of the {name} ends at the end of the range that was searched, so these levels do "
+                f"not bound it {way}"
+            )
     return tuple(notes)
 
 
@@ -226,7 +229,8 @@ def _counts(levels: ArrayLike, right: ArrayLike, trials: ArrayLike | None) -> tu
     trials = np.ones_like(levels) if trials is None else np.atleast_1d(np.asarray(trials, float))
     if not (levels.shape == right.shape == trials.shape and levels.ndim == 1 and len(levels)):
         raise AnalysisError(
-            f"levels, right and trials have shapes {levels.shape}, {right.shape}, {trials.shape}; needs one entry a level in each"
+            f"levels, right and trials have shapes {levels.shape}, {right.shape}, {trials.shape}; needs one entry per level "
+            "in each"
         )
     whole = (right == np.round(right)).all() and (trials == np.round(trials)).all()
     if not (np.isfinite(levels).all() and whole and (trials > 0).all() and (right >= 0).all() and (right <= trials).all()):
@@ -240,6 +244,6 @@ def _check_telling(levels, right, trials, shape):
         raise AnalysisError(f"a level of {levels.min():g}; {shape} needs levels >= 0, or shape='normal' for both signs")
     if len(levels) < 2 or right.sum() in (0, trials.sum()):
         raise AnalysisError(
-            f"{int(right.sum())} of {int(trials.sum())} answers right at {len(levels)} level(s); a threshold needs right and "
-            "wrong answers at two levels at least: ask at more levels"
+            f"{int(right.sum())} of {int(trials.sum())} answers right at {len(levels)} level(s); a threshold needs right "
+            "and wrong answers at two levels or more. Ask at more levels"
         )

@@ -106,7 +106,7 @@ class Control(ShowsItself):
 
     def __post_init__(self) -> None:
         choice("how", self.how, HOW, error=PaddleError)
-        need = "what the person believes to move, hl.people.Load(m=0.5) in kg."
+        need = "the load that the person expects, such as hl.people.Load(m=0.5), in kg."
         instance("expects", self.expects, Load | None, need, error=PaddleError)
         gain, reaction = {"unit": "1/s", "least": 0}, {"unit": "s", "least": 0}
         numbers(self, "a person", error=PaddleError, gain=gain, reaction=reaction)
@@ -216,7 +216,7 @@ def reach(
     """
     end = number("end", end, "m", "a reach", error=PaddleError)
     if end == 0:
-        raise PaddleError("end = 0 m; a reach goes from x = 0 to another place")
+        raise PaddleError("end = 0 m; a reach goes from x = 0 to a different position")
     path = MinimumJerk(end=end, duration=duration, begin=begin)
     log, wanted = follow(paddle, scene, path, record=record, control=control, **options)
     x, distance = handle(log), abs(end)
@@ -280,7 +280,7 @@ class Anticipated(Intent):
 def check_path(path: object) -> None:
     """Refuse what is no path, or whose ``at`` does not return positions, velocities and accelerations."""
     if isinstance(path, type) or not hasattr(path, "at"):
-        raise PaddleError(f"path = {path!r}; needs a path of time, as hl.people.MinimumJerk(end=0.02, duration=0.4).")
+        raise PaddleError(f"path = {path!r}; needs a path of time, such as hl.people.MinimumJerk(end=0.02, duration=0.4).")
     times, cause = np.array([0.0, 1e-3]), None
     try:
         found = [np.asarray(part, float) for part in path.at(times)]

@@ -72,7 +72,7 @@ class Psychometric(ShowsItself):
             raise AnalysisError(f"guess = {self.guess:g}, lapse = {self.lapse:g}; needs both >= 0 and guess + lapse < 1")
 
     def __call__(self, levels: ArrayLike) -> Array:
-        """The part of right answers at each level."""
+        """The proportion of right answers at each level."""
         q = (self.threshold if self.shape == "normal" else math.log(self.threshold), math.log(self.slope))
         return self.guess + (1 - self.guess - self.lapse) * rise(self.shape, np.asarray(levels, float), *q)[0]
 

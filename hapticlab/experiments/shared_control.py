@@ -145,7 +145,7 @@ def assistance(
     check_path(path)
     scenes = (scenes,) if isinstance(scenes, Scene) else scenes
     if not (tremor is None or callable(tremor)):
-        raise PaddleError(f"tremor = {tremor!r}; needs a path of times in metres, as hl.people.Tremor(rms=3e-4).")
+        raise PaddleError(f"tremor = {tremor!r}; needs a path of times in metres, such as hl.people.Tremor(rms=3e-4).")
     low, high = (number("band", edge, "Hz", "a tremor", above=0, error=PaddleError) for edge in band)
     tremor = Tremor(rms=3e-4) if tremor is None else tremor
     times = np.arange(paddle.ticks(record) + 1) * paddle.T

@@ -44,8 +44,8 @@ class Submovements:
     def __init__(self, width, *, scatter=0.04, pause=0.18, furthest):
         if not (width > 0 and scatter > 0 and pause >= 0 and furthest > width / 2):
             raise AnalysisError(
-                f"width = {width:g} m, scatter = {scatter:g} s, pause = {pause:g} s, furthest = {furthest:g} m; needs all "
-                "positive, and distances beyond half the width"
+                f"width = {width:g} m, scatter = {scatter:g} s, pause = {pause:g} s, furthest = {furthest:g} m; all need to "
+                "be positive, and the distances larger than half the width"
             )
         self.width, self.scatter = width, scatter
         self.distances = np.geomspace(width / 2, furthest, DISTANCES)

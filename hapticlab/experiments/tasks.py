@@ -210,10 +210,10 @@ def _applied(log):
 def _slope(x, y, otherwise):
     x = x - x.mean() if len(x) else x
     if len(x) < 3 or not (x @ x) > 0:
-        raise AnalysisError(f"nothing was felt: {otherwise}; explore further, or for longer")
+        raise AnalysisError(f"nothing was felt, because {otherwise}; explore further, or for longer")
     return float(x @ (y - y.mean()) / (x @ x))
 
 
 def _positive(name, value, unit):
-    why = f"so that a difference in {name} can be a part of it"
+    why = f"so that a difference can be a fraction of {name}"
     return number(name, value, unit, "a task", above=0, why=why)

@@ -126,7 +126,7 @@ class UpDown(ShowsItself):
 
     @property
     def target(self) -> float:
-        """The part of right answers it goes towards."""
+        """The proportion of right answers it goes towards."""
         return (self.weight / (1 + self.weight)) ** (1 / self.down)
 
     @property
@@ -140,10 +140,11 @@ class UpDown(ShowsItself):
         self._step(right)
         if self._at_end >= ENOUGH:
             end = f"right {ENOUGH} times in a row at the lowest" if right else f"wrong {ENOUGH} times in a row at the highest"
-            self.gave_up = f"{end} level, {self.level:.4g}: the threshold lies beyond it"
+            self.gave_up = f"{end} level, {self.level:.4g}, so the threshold lies beyond it"
         elif self.told >= self.most_trials and len(self.turned) < self.reversals:
             self.gave_up = (
-                f"{self.told} trials brought {len(self.turned)} of {self.reversals} turning points, of {self.most_trials} allowed"
+                f"{self.told} trials gave {len(self.turned)} of {self.reversals} turning points, and {self.most_trials} "
+                "trials are allowed"
             )
 
     def _step(self, right):
@@ -160,11 +161,11 @@ class UpDown(ShowsItself):
     def estimate(self) -> float:
         """The geometric mean of the levels at the turning points, an even number of them, after the first ones."""
         if self.gave_up:
-            raise AnalysisError(f"no estimate: {self.gave_up}; ask again with other low, high or most_trials")
+            raise AnalysisError(f"no estimate: {self.gave_up}. Ask again with a different low, high or most_trials")
         used = self.turned[self.skip :]
         used = used[len(used) % 2 :]
         if not used:
-            raise AnalysisError(f"{len(self.turned)} turning points; the estimate needs {self.skip + 2}: ask on")
+            raise AnalysisError(f"{len(self.turned)} turning points; the estimate needs {self.skip + 2}. Continue asking")
         return math.exp(float(np.mean(np.log(used))))
 
     def settles(self, curve: Psychometric, per_step: int = 1, most: int = 400) -> float:
@@ -183,7 +184,7 @@ class UpDown(ShowsItself):
         """
         up = self.weight * per_step
         if abs(up - round(up)) > 1e-9:
-            raise AnalysisError(f"weight = {self.weight:g} is no multiple of 1/{per_step}; give per_step")
+            raise AnalysisError(f"weight = {self.weight:g} is not a multiple of 1/{per_step}; give per_step")
         grid = math.log(self.factor) / per_step
         below = min(int(math.log(self.first / self.low) / grid), most // 2)
         above = min(int(math.log(self.high / self.first) / grid), most // 2)

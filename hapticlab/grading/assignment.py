@@ -118,17 +118,17 @@ def find_assignment(lab: File, instructor: File | None = None, seed: int = 0, pe
     >>> find_assignment("77")
     Traceback (most recent call last):
         ...
-    hapticlab.errors.CourseError: there is no lab 77; there are ... an own lab is named by its folder
+    hapticlab.errors.CourseError: there is no lab 77; there are ... for a lab of your own give its folder
     """
     folder = _folder(lab)
     if instructor is None:
         if personal:
-            raise CourseError("personal numbers are drawn by an instructor's hidden.py; name the folder of answers as well")
+            raise CourseError("personal numbers come from the instructor's hidden.py; give the folder of answers as well")
         return Assignment(folder.lab(), folder, None, seed)
     check_tree(instructor)
     answers = Path(instructor).resolve() / folder.name
     if not answers.is_dir():
-        raise CourseError(f"{instructor} holds no {folder.name}, with its solution.py and hidden.py")
+        raise CourseError(f"{instructor} contains no {folder.name} with its solution.py and hidden.py")
     assignment = Assignment(folder.lab(), folder, answers, seed, personal)
     assignment.cases("")  # what is wrong with the answers is said before any submission is read
     return assignment
@@ -144,8 +144,8 @@ def _folder(lab):
     if own.notebook.is_file() and (path / CHECKS).is_file():
         return own
     if path.is_dir():
-        raise CourseError(f"{lab} is no lab; its folder needs {path.name}.ipynb and {CHECKS}")
-    raise CourseError(f"there is no lab {lab}; there are {', '.join(found) or 'none'}; an own lab is named by its folder")
+        raise CourseError(f"{lab} is not a lab; its folder needs {path.name}.ipynb and {CHECKS}")
+    raise CourseError(f"there is no lab {lab}; there are {', '.join(found) or 'none'}; for a lab of your own give its folder")
 
 
 def files_of(folder: File) -> dict[str, Path]:

@@ -56,7 +56,9 @@ class ClusterWorkers:
             self._before = self._client.run(processor_seconds, on_error="ignore")
             said = [json.loads(text) for text in self._client.run(_ready, self._setup).values()]
             if any(one["digest"] != self._digest for one in said):
-                raise CourseError("the cluster's workers have another version of hapticlab; install the same one there")
+                raise CourseError(
+                    "the workers of the cluster have a different version of hapticlab; install the same version there"
+                )
         except BaseException:
             self._client.close()
             raise
@@ -85,7 +87,7 @@ def _client(address):
     try:
         from distributed import Client
     except ImportError:
-        raise EngineMissingError(f"{address} is a Dask cluster; to reach one do: pip install distributed") from None
+        raise EngineMissingError(f"{address} is a Dask cluster; to connect to it, do: pip install distributed") from None
     try:
         return Client(address, set_as_default=False, timeout=PATIENCE)
     except (OSError, ValueError) as problem:

@@ -64,7 +64,9 @@ class Journal:
                 fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except (BlockingIOError, PermissionError):
             self._file.close()
-            raise CourseError(f"another run writes {self.path}; wait for its end, or write the results elsewhere") from None
+            raise CourseError(
+                f"another run is writing {self.path}; wait until it ends, or write the results to a different file"
+            ) from None
         except OSError:  # some file systems of a network have no locks
             pass
 
@@ -83,7 +85,7 @@ class Journal:
             while left:
                 left = left[self._file.write(left) :]
         except OSError as problem:  # of a disk that is full, without the name of the file
-            words = "The reports before are kept; make room and give the same command again"
+            words = "The earlier reports are kept. Free some disk space and run the same command again"
             raise CourseError(f"cannot write {self.path}: {problem.strerror or problem}. {words}") from None
 
     def _read(self):

@@ -31,27 +31,30 @@ def check_places(submissions, *, judging=None, written=None, imported=()):
     >>> check_places(["class"], judging={"--instructor": "class/eve"})
     Traceback (most recent call last):
         ...
-    hapticlab.errors.CourseError: --instructor class/eve lies in the submissions class, ...
+    hapticlab.errors.CourseError: --instructor class/eve is in the submissions class, ...
     """
     judging, written = ({option: path for option, path in (several or {}).items() if path} for several in (judging, written))
     for root in map(_root, submissions):
         for option, path in judging.items():
             if is_inside(path, root):
-                words = f"{option} {path} lies in the submissions {root}, whose code must not judge"
-                raise CourseError(f"{words}. Name a folder of your own, and the folder of the submissions alone")
+                words = f"{option} {path} is in the submissions {root}, whose code must not grade"
+                raise CourseError(f"{words}. Give a folder of your own, and the folder that contains only the submissions")
             if is_inside(root, path) and (option == "--lab" or _holds_answers(root, path)):
-                raise CourseError(f"{root} lies in {option} {path}, which is not handed in; name the folder of the submissions")
+                raise CourseError(
+                    f"{root} is in {option} {path}, which students did not hand in; give the folder of the submissions"
+                )
         if is_inside(root, labs_folder()):
-            raise CourseError(f"{root} is a lab as it came with hapticlab; name the folder of the submissions")
+            raise CourseError(f"{root} is a lab of hapticlab itself; give the folder of the submissions")
         for option, path in written.items():
             if is_inside(path, root):
-                words = f"{option} {path} lies in the submissions {root}, where it would be taken for a submission"
-                raise CourseError(f"{words}, or take the place of one. Name a place outside")
+                words = f"{option} {path} is in the submissions {root}, where it would be treated as a submission"
+                raise CourseError(f"{words}, or replace one. Give a path outside")
         for path in imported:
             if is_inside(path or ".", root):
                 raise CourseError(
-                    f"Python imports modules from {path or os.getcwd()}, which lies in the submissions {root}: a student's file "
-                    "could run in place of a module. Change to a folder outside, or start with: python -P -m hapticlab grade"
+                    f"Python imports modules from {path or os.getcwd()}, which is in the submissions {root}, so the file of "
+                    "a student could run instead of a module. Change to a folder outside, or start with: python -P -m "
+                    "hapticlab grade"
                 )
 
 
@@ -70,11 +73,11 @@ def check_written(output, pages=None, others=()):
     CourseError
     """
     if output and output.is_dir():
-        raise CourseError(f"-o {output} is a folder; name a file for the results, such as -o {output / 'grades.csv'}")
+        raise CourseError(f"-o {output} is a folder; give a file for the results, such as -o {output / 'grades.csv'}")
     if output and (output.suffix.lower() in WORK or any(_same(output, other) for other in others)):
-        raise CourseError(f"-o {output} would take the place of what is read there; name another file for the results")
+        raise CourseError(f"-o {output} would overwrite a file that is read; give a different file for the results")
     if pages and pages.exists() and not pages.is_dir():
-        raise CourseError(f"--pages {pages} is a file; name a folder for the pages")
+        raise CourseError(f"--pages {pages} is a file; give a folder for the pages")
     if output:
         output.parent.mkdir(parents=True, exist_ok=True)
 

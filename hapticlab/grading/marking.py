@@ -34,12 +34,12 @@ class Found:
 def ended_words(reason: str, limits: Limits) -> str:
     """Return in words why a process ended."""
     words = {
-        "time": f"it was not done after {limits.seconds:g} s",
+        "time": f"it was not finished after {limits.seconds:g} s",
         "memory": f"it needs more than {limits.memory / 2**20:g} MiB of memory",
         "processes": f"it starts more than {limits.processes} processes",
         "exit": "it ends the process it runs in",
-        "flood": "it writes without end",
-        "garbage": "what came back is no value",
+        "flood": "it writes output endlessly",
+        "garbage": "its result is not a value",
     }
     return words.get(reason, f"its process was ended by {reason}")
 
@@ -70,7 +70,7 @@ def exercise_report(exercise, cases, found, limits, slips=None):
     >>> exercise, case = Exercise("k", "value", points=2), Case({}, 150.0, unit="N/m")
     >>> report = exercise_report(exercise, [(case, True)], Found((Outcome(-150.0),)), Limits())
     >>> report.earned, report.words
-    (0.0, '-150 N/m: not yet. The sign is turned.')
+    (0.0, '-150 N/m: not yet. The sign is wrong.')
     """
     about = {"name": exercise.name, "kind": exercise.kind, "asks": exercise.asks, "points": float(exercise.points)}
     if found.ended:
@@ -127,7 +127,7 @@ def _noted(exercise, outcomes):
         return {"answered": True, "words": outcome.problem}
     text = outcome.value if isinstance(outcome.value, str) else str(rounded(outcome.value))
     words = len(text.split())
-    lacking = f"{words} words, needs at least {exercise.least_words}" if words < exercise.least_words else ""
+    lacking = f"{words} words; needs at least {exercise.least_words}" if words < exercise.least_words else ""
     return {"answered": True, "text": text_of(text), "words": lacking}
 
 

@@ -170,7 +170,7 @@ class _Run:
             self.journal.write(task.key, reply.report)
             self._keep(reply.report)
         else:  # not into the journal: another run may have more luck
-            problem = reply.problem or "the process that graded it ended twice; is there memory for it?"
+            problem = reply.problem or "the process that graded it ended twice; is there enough memory?"
             report = refused(task.submission, self.assignment, problem, self.limits)
             self._keep(replace(report, grader_failed=bool(reply.problem)))
 

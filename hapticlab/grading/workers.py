@@ -128,7 +128,7 @@ class _Worker:
         try:
             said = json.loads(self.connection.recv_bytes())
         except (EOFError, OSError):
-            raise CourseError("a process that grades ended as it began; is there memory for it?") from None
+            raise CourseError("a grading process ended at its start; is there enough memory?") from None
         if said["problem"]:
             raise CourseError(said["problem"])
         return Walls(**said["walls"])

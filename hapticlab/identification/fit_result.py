@@ -109,7 +109,7 @@ class Found(Tabular):
 
     def __getitem__(self, name: str) -> Estimate:
         if name not in self.estimates:
-            raise AnalysisError(f"{name!r} was not sought; found are {', '.join(self.estimates)}")
+            raise AnalysisError(f"{name!r} was not estimated; the estimates are {', '.join(self.estimates)}")
         return self.estimates[name]
 
     @property
@@ -139,18 +139,19 @@ class Found(Tabular):
         lines.append(f"  {'sensor':<{width}}{how} {1e6 * self.sigma:.3g} um{counts}")
         if not self.explained:
             lines.append(
-                f"  NOT EXPLAINED: neighbouring residuals correlate by {self.correlation:.2f}; something moves the handle that "
-                f"the model lacks ({self.lacking}), and the intervals are too narrow"
+                f"  NOT EXPLAINED: neighbouring residuals correlate by {self.correlation:.2f}; an effect that is not in the "
+                f"model moves the handle ({self.lacking}), and the intervals are too narrow"
             )
         if not self.converged:
             lines.append(
-                "  NOT CONVERGED: a small change would fit better, and the intervals hold the truth less often than "
-                f"{self.confidence:.0%}. Record longer, move the handle further with more force, or give what is known"
+                "  NOT CONVERGED: a small change would fit better, and the intervals contain the true value less often than "
+                "{self.confidence:.0%}. Record longer, move the handle further with more force, or give known constants "
+                "with known="
             )
         if not self.dithered:
             lines.append(
-                f"  NOT DITHERED: noise is below {DITHERED:g} count, so samples share their rounding; the intervals come of "
-                "counting the fitted motion anew. Moved over more counts, the handle tells more"
+                f"  NOT DITHERED: noise is below {DITHERED:g} count, so samples share their rounding; the intervals come "
+                "from quantising the fitted motion again. Move the handle over more counts to learn more"
             )
         return "\n".join(lines)
 
@@ -162,11 +163,11 @@ class Found(Tabular):
             above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
             above.plot(t, 1e3 * self.measured, ".", color="#8a8a8a", markersize=3, label="measured")
             above.plot(t, 1e3 * self.fitted, **STYLES[1], label="fitted")
-            above.set(ylabel="handle position x [mm]", title="Positions, and what the fit leaves")
+            above.set(ylabel="handle position x [mm]", title="Positions and residuals")
             above.legend(**FRAME)
             below.plot(t, 1e6 * (self.measured - self.fitted), ".", color="#000000", markersize=2)
             below.axhspan(-2e6 * self.sigma, 2e6 * self.sigma, color=COLD, alpha=0.15, label="2 standard deviations")
-            below.set(xlabel="time, records one after the other [s]", ylabel="residual [um]")
+            below.set(xlabel="time, records in sequence [s]", ylabel="residual [um]")
             below.legend(loc="upper right", **FRAME)
         return figure
 
@@ -188,8 +189,8 @@ def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
     limit = BEYOND if explains(fitted.residuals, y[:, None], quantum)[0] else 0.0
     if past := [name for name, by in zip(names, fitted.beyond[:, 0], strict=False) if by > limit]:
         raise AnalysisError(
-            f"identify: the motion asks for a negative {' and '.join(past)}, so the model lacks something ({made.lacking}), "
-            f"or a force has the wrong sign. Plot the record, and record {made.advice}"
+            f"identify: the best fit has a negative {' and '.join(past)}, so an effect is missing from the model "
+            f"({made.lacking}), or a force has the wrong sign. Plot the record, and record {made.advice}"
         )
     lows = [0.0 if name in made.bounded else -np.inf for name in names]
     estimates = {
@@ -206,6 +207,6 @@ def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
 def _open(names, advice, beside):
     """Refuse constants that the records leave open."""
     raise AnalysisError(
-        f"identify: these records do not tell {', '.join(names)} from each other, or at all. Record {advice}; or seek less "
-        f"(known={{...}}){beside}"
+        f"identify: these records do not determine {', '.join(names)} separately, or at all. Record {advice}; or estimate "
+        f"fewer constants (known={{...}}){beside}"
     )

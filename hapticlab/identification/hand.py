@@ -37,8 +37,8 @@ class HandFit(Found):
     """Mass, damping and stiffness of a hand; ``found["k"]`` is an Estimate. Print it, or plot what it left."""
 
     about = "hand"
-    lacking = "a reflex within the window, tremor, a grip that changes or does not follow"
-    advice = "harder pushes, both ways, of a hand that holds still (hl.identify.pushes does)"
+    lacking = "a reflex within the window, tremor, a grip that changes or slips"
+    advice = "harder pushes in both directions on a hand that holds still (hl.identify.pushes does this)"
     above = ()
     bounded = ("m", "b", "k")
     constants: ClassVar = {"m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "k": ("stiffness", "N/m")}
@@ -51,7 +51,9 @@ class HandFit(Found):
         m, b, k = (self[name].value for name in ("m", "b", "k"))
         lines = [super().__str__()]
         if m > 0 and k > 0:
-            lines.append(f"  alone it swings at {np.sqrt(k / m) / 2 / np.pi:.3g} Hz, damping ratio {b / 2 / np.sqrt(k * m):.2g}")
+            lines.append(
+                f"  alone it oscillates at {np.sqrt(k / m) / 2 / np.pi:.3g} Hz, damping ratio {b / 2 / np.sqrt(k * m):.2g}"
+            )
         return "\n".join(lines)
 
 
@@ -109,7 +111,7 @@ def identify_hand(
     device = getattr(device, "settings", device)
     if device is None or isinstance(device, Telemetry):
         raise AnalysisError(
-            "hl.identify.hand: whose handle is it? Give device=, a PaddleProfile or found.profile() of hl.identify.paddle"
+            "hl.identify.hand: the paddle is not known. Give device=, a PaddleProfile or found.profile() of hl.identify.paddle"
         )
     own = {name: float(getattr(device, name, 0.0)) for name in ("m", "b", "coulomb")}
     own["delay"] = float(getattr(device, "delay", source.delay))
@@ -146,8 +148,8 @@ def _windows(log, window):
             free = at + long
     if not found:
         raise AnalysisError(
-            f"hl.identify.hand: no push in {len(log)} samples with {BEFORE:g} s of F = 0 before it and {window:g} s from its "
-            "begin on; run hl.identify.pushes(paddle), or a scene that is quiet but for short pushes"
+            f"hl.identify.hand: no push in {len(log)} samples with {BEFORE:g} s of F = 0 before it and {window:g} s after "
+            "its beginning. Run hl.identify.pushes(paddle), or a scene whose force is 0 N apart from short pushes"
         )
     return found
 

@@ -25,8 +25,9 @@ SETTLES, FEWEST = 5, 20
 #: counts that a handle has to move by to tell anything
 MOVED = 20
 FORCE_CONSTANT = (
-    "the force constant cannot be told from motion alone: twice the force on twice the mass with twice the friction moves "
-    "alike. Give a known reference: a record with HandleRecord(log, added=...) of a known mass fixed to the handle beside one "
+    "the force constant cannot be found from motion alone, because twice the force on twice the mass with twice the "
+    "friction gives the same motion. Give a known reference: a record with HandleRecord(log, added=...) of a known mass "
+    "fixed to the handle beside one "
     "without, or HandleRecord.hanging(log, mass) of a weight that pulls on it"
 )
 
@@ -70,8 +71,8 @@ class HandleRecord(ShowsItself):
             raise AnalysisError(f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end")
         if self.log.every > 1:
             raise AnalysisError(
-                f"identify: one sample in {self.log.every} was sent, and the forces between are not known; needs every one: "
-                "connect with a longer T, or watch fewer channels"
+                f"identify: one sample in {self.log.every} was sent, and the forces between them are not known. The "
+                "identification needs every sample. Connect with a longer T, or watch fewer channels"
             )
         return Trace(self.log.x[first:, None], self.log.F[first:], self.log.T, self.added, self.push, self.at_rest)
 
@@ -109,8 +110,8 @@ def spin_down(
     first = driven[-1] + 1 + SETTLES if len(driven) else 0
     if len(log) - first < FEWEST:
         raise AnalysisError(
-            f"spin_down: the last {max(len(log) - first, 0)} of {len(log)} samples are without force; needs {FEWEST}: "
-            "a kick, then F = 0 until the handle rests"
+            f"spin_down: the last {max(len(log) - first, 0)} of {len(log)} samples are without force; needs {FEWEST}. Push "
+            "the handle, then keep F = 0 until the handle rests"
         )
     m = None if m is None else number("m", m, "kg", "a handle", above=0)
     known = {"m": 1.0 if m is None else m}
@@ -149,7 +150,7 @@ def step_response(
     if not 1 <= changes <= len(log) / 4:
         raise AnalysisError(
             f"step_response: the force changes {changes} times in {len(log)} samples; needs a few steps, each held for a while. "
-            "For a force that always changes use chirp_response(log), for none spin_down(log)"
+            "For a force that always changes use chirp_response(log), and for no force spin_down(log)"
         )
     return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
 
@@ -215,7 +216,7 @@ def identify(
         raise AnalysisError(f"known = {sorted(unknown)}; needs constants of {', '.join(CONSTANTS)}")
     given = [one if isinstance(one, HandleRecord) else HandleRecord(one) for one in records]
     if not given:
-        raise AnalysisError("identify() of no record; needs one or more, log = paddle.run(...)")
+        raise AnalysisError("identify() was given no record; needs one or more, log = paddle.run(...)")
     if force_constant and "m" not in known and not any(one.added or one.push for one in given):
         raise AnalysisError(FORCE_CONSTANT)
     sought = tuple(name for name in CONSTANTS if name not in known and (force_constant or name != "scale"))
@@ -237,7 +238,7 @@ def _found(problem, names, confidence, near=None):
     if np.ptp(measured) <= MOVED * problem.quantum:
         raise AnalysisError(
             f"identify: the handle moved by {1e3 * np.ptp(measured):.3g} mm; needs more than {MOVED} counts, "
-            f"{1e3 * MOVED * problem.quantum:.3g} mm. Is the motor on, and the force above friction?"
+            f"{1e3 * MOVED * problem.quantum:.3g} mm. Is the motor on, and is the force above friction?"
         )
     beside = f". Also, {FORCE_CONSTANT}" if "scale" in names else ""
     return told(

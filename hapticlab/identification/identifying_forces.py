@@ -100,8 +100,8 @@ def designed(kind, size, T, travel, constants):
         return made(lengths[fitting - 1])
     if size / 2 <= constants["coulomb"]:
         raise AnalysisError(
-            f"{kind} of {size:g} N: {SHORTEST} samples of {T:g} s already move the handle past {1e3 * FILLS * travel:.3g} mm, "
-            "and half the force is below friction; give a smaller T or more travel="
+            f"{kind} of {size:g} N: {SHORTEST} samples of {T:g} s already move the handle beyond {1e3 * FILLS * travel:.3g} "
+            "mm, and half the force is below friction. Give a smaller T or a larger travel="
         )
     return designed(kind, size / 2, T, travel, constants)
 

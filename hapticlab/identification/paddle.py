@@ -96,7 +96,9 @@ def identify_paddle(
     (True, True, True, True)
     """
     if beside and not added:
-        raise AnalysisError("beside= without added=: records with and without a known mass tell the force constant; give added=")
+        raise AnalysisError(
+            "beside= without added=: records with and without a known mass determine the force constant. Give added="
+        )
     force, travel = _limits(paddle, force, travel)
     added = number("added", added, "kg", "an identification", least=0, error=PaddleError)
     pilot, size = _pilot(paddle, force, travel)
@@ -119,7 +121,7 @@ def _limits(paddle, force, travel):
     """The largest force [N] and travel [m]."""
     settings = getattr(paddle, "settings", None)
     if isinstance(paddle, SerialPaddle) and settings is None:
-        raise PaddleError("the board has no calibration, so its travel and force are not known: run `hapticlab calibrate` first.")
+        raise PaddleError("the board has no calibration, so its travel and force are not known. Run `hapticlab calibrate` first.")
     if settings is not None:
         usual = min(settings.force_continuous, settings.force_max), 0.8 * min(-settings.travel_min, settings.travel_max)
     else:
@@ -149,7 +151,7 @@ def _pilot(paddle, force, travel):
         if size >= force:
             raise AnalysisError(
                 f"hl.identify.paddle: {force:.3g} N moves the handle by {1e3 * np.ptp(log.x):.2g} mm only; needs "
-                f"{1e3 * FOUND * travel:.2g} mm. Check the motor's supply and that nobody holds the handle, or allow "
+                f"{1e3 * FOUND * travel:.2g} mm. Check the motor's supply, make sure that nobody holds the handle, or give "
                 "a larger force="
             )
         size = min(size * GROWS, force)

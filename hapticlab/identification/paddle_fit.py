@@ -17,7 +17,7 @@ class PaddleFit(Found):
 
     about = "paddle"
     lacking = "a stop, a hand, backlash, friction that is not constant"
-    advice = "a kick, steps and a chirp (hl.identify.paddle does), with forces of several sizes, both ways"
+    advice = "a push, steps and a chirp (hl.identify.paddle does this), with forces of several sizes in both directions"
     above = ("m", "scale")
     bounded = ("m", "b", "coulomb", "scale", "b/m", "coulomb/m")
     constants: ClassVar = {
@@ -41,7 +41,9 @@ class PaddleFit(Found):
             If the mass was not found: a spin-down alone tells ratios.
         """
         if "m" not in self.estimates:
-            raise AnalysisError("the mass was not found: a spin-down tells b/m and coulomb/m; add a step or a chirp, or give m=")
+            raise AnalysisError(
+                "the mass was not found, because a spin-down determines only b/m and coulomb/m. Add a step or a chirp, or give m="
+            )
         told = {key: self[key].value for key in ("m", "b", "coulomb") if key in self.estimates}
         told |= {key: max(told[key], 0.0) for key in ("b", "coulomb") if key in told}
         return PaddleProfile(

@@ -53,7 +53,9 @@ def push_hand(paddle: SimulatedPaddle | SerialPaddle, *, force: float = FORCE, p
             raise PaddleError("hl.identify.hand: the board has no calibration: run `hapticlab calibrate` first.")
         most = min(paddle.settings.force_continuous, paddle.settings.force_max)
         if force > most:
-            raise PaddleError(f"hl.identify.hand: force = {force:g} N; the motor stands for {most:.3g} N: give less.")
+            raise PaddleError(
+                f"hl.identify.hand: force = {force:g} N; the motor can give {most:.3g} N continuously. Give a smaller force."
+            )
         _look(paddle, force)
     draws = np.random.default_rng(seed)
     starts = np.cumsum(draws.uniform(*APART, pushes)) / T
@@ -77,9 +79,9 @@ def _pushed(paddle, force, starts, signs, duration):
     cut = (abs(log.x - log.x[0]) > TRAVEL) | (abs(log.v) > fastest)
     if cut.any():
         raise PaddleError(
-            f"hl.identify.hand: the motor was switched off after {log.t[cut.argmax()]:.3g} s, a push of {force:.3g} N moved "
-            f"the handle further than {1e3 * TRAVEL:.3g} mm from where it began, or faster than {fastest:.3g} m/s: hold it, "
-            "or give a smaller force="
+            f"hl.identify.hand: the motor was switched off after {log.t[cut.argmax()]:.3g} s, because a push of {force:.3g} "
+            f"N moved the handle further than {1e3 * TRAVEL:.3g} mm from where it began, or faster than {fastest:.3g} m/s. "
+            "Hold the handle, or give a smaller force="
         )
     return log
 
@@ -98,6 +100,6 @@ def _look(paddle, force):
             return
     if way > STILL * count:
         raise PaddleError(
-            f"hl.identify.hand: pushed by {pushed:.3g} N for {1e3 * LASTS:g} ms the handle went {1e3 * way:.2g} mm and did "
-            "not come back: somebody has to hold it, where they want to keep it; a hand without stiffness is not pushed"
+            f"hl.identify.hand: pushed by {pushed:.3g} N for {1e3 * LASTS:g} ms, the handle moved {1e3 * way:.2g} mm and "
+            "did not come back. A person must hold the handle in place; a hand without stiffness cannot be identified"
         )

@@ -126,7 +126,7 @@ def admittance_design(device: AnyDevice, *, servo: float, servo_stiffness: float
     needed, body = _needed(bare, theta), 2 * np.sin(theta / 2) ** 2 / T
     slow = float(_needed(bare, np.array([SLOW]))[0])  # no body resists motion as slow as this: a damper has to
     if slow > b_a + SLOW:
-        raise AnalysisError(f"b_a = {b_a:g} N s/m: slow motion against the servo's spring needs b_a >= {slow:.4g}")
+        raise AnalysisError(f"b_a = {b_a:g} N s/m; slow motion against the servo's spring needs b_a >= {slow:.4g} N s/m")
     masses = (needed - b_a) / body
     worst = int(masses.argmax())
     m_a = max(float(masses[worst]), 0.0)
@@ -142,8 +142,9 @@ def _servo_passive(bare, b_s, k_s, *, m, b, T, delay):
         return
     alone = "" if bare.stable else "it diverges without a hand; "
     raise AnalysisError(
-        f"servo = {b_s:g} N s/m, {k_s:g} N/m: {alone}active in some hand, before any environment: sampled and held it needs a "
-        f"device of more than {asked:.4g} N s/m, and this one has b = {b:g}; needs a softer servo or a shorter delay"
+        f"servo = {b_s:g} N s/m, {k_s:g} N/m: {alone}active in some hand even without an environment. Sampled and held, it "
+        f"needs a device damping above {asked:.4g} N s/m, and this device has b = {b:g} N s/m. Use a softer servo or a "
+        "shorter delay"
     )
 
 

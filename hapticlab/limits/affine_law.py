@@ -87,7 +87,9 @@ def affine_law(
     if isinstance(law, str):
         return _named(law, T, B, velocity)
     if B:
-        raise AnalysisError(f"B = {B:g} N s/m beside {_what(law)}; only a named law takes one: put the damper into the law")
+        raise AnalysisError(
+            f"B = {B:g} N s/m with {_what(law)}; only a named law has a B of its own. Put the damper into the law"
+        )
     if isinstance(law, AffineLaw):
         return law
     if isinstance(law, LinearLaw):
@@ -141,7 +143,7 @@ def _of_scene(scene, T, parameter, velocity):
             program = compile(bound, T=T, live=(), dtype="float64", velocity=velocity)
             return _map_with_velocity(program) if len(program.inputs) > 1 else _map(program)
         except AnalysisError as error:
-            raise AnalysisError(f"{error}. Inside its boundary a wall is linear: hl.wall(..., unilateral=None)") from error
+            raise AnalysisError(f"{error}. Inside its boundary a wall is linear. Write hl.wall(..., unilateral=None)") from error
 
     return of
 
@@ -186,7 +188,9 @@ def _fitted(of, name):
     for _ in range(len(A) + 1):  # the part of the impulse response with K squared
         squared, product = max(squared, abs(law.C1 @ product)), A @ product
     if not same or squared > ROUNDING * abs(law.C1).max(initial=0) * abs(law.B1).max(initial=0):
-        raise AnalysisError(f"{name}: its force is no affine function F0 + K F1 of the stiffness; look at its poles, K by K")
+        raise AnalysisError(
+            f"{name}: its force is not an affine function F0 + K F1 of the stiffness. Compute its poles for each K instead"
+        )
     return law
 
 

@@ -30,7 +30,7 @@ TWO_MODES = ("b", "T", "delay", "coulomb", "counts_per_metre")
 #: what e of :func:`gil_limit` may be at most for Gil's formula
 SLOW_ENOUGH = 0.1
 PASSIVITY = AnyHand("passivity: any hand, sufficient")
-SINUSOIDS = "of slow sinusoids alone: no passivity, which ends sooner"
+SINUSOIDS = "for slow sinusoids only: not passivity, which ends at a lower stiffness"
 STABILITY = "stability of this plant, to first order in the delay"
 REGIONS = {
     (True, True): "passive: comes to rest from anywhere",
@@ -77,7 +77,9 @@ def abbott_okamura_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "z
     b, T, delay, coulomb, counts = known(device, *TWO_MODES)
     for name, value, unit in (("B", B, "N s/m"), ("delay", delay, "s")):
         if value:
-            raise AnalysisError(f"{name} = {value:g} {unit}; Abbott and Okamura's bound is for a plain spring without {name}")
+            raise AnalysisError(
+                f"{name} = {value:g} {unit}; the bound of Abbott and Okamura is for a plain spring without {name}"
+            )
     _plain(law, "Abbott and Okamura")
     return _two_modes(b, T, coulomb, counts, 0.5, "Abbott and Okamura 2005")
 
@@ -109,7 +111,10 @@ def diolaiti_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -
     found = _two_modes(b, T, coulomb, counts, 0.5 + delay / T, "Diolaiti et al. 2006")
     if not whole_and_fraction(delay, T)[1]:
         return found
-    note = "a fraction of a period of delay: a hand that moves faster before the force changes draws energy up to 8 % lower"
+    note = (
+        "the delay has a fraction of a period: a hand that moves faster before the force changes can draw energy up to 8 "
+        "% below this limit"
+    )
     return replace(found, kind=SINUSOIDS, assumptions=(*found.assumptions, note))
 
 
@@ -232,7 +237,7 @@ def gil_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Lim
         raise AnalysisError(
             f"((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B) = {e} with K = {K:.4g} N/m, tau = T/2 + delay = "
             f"{1e3 * tau:g} ms, b + B = {b + B:.4g} N s/m; "
-            f"Gil's formula needs at most {SLOW_ENOUGH:g}: read hl.stability_limit, which is exact"
+            f"Gil's formula needs at most {SLOW_ENOUGH:g}. Use hl.stability_limit, which is exact"
         )
     off = 100 * 1.7 * small / (b + B) if small else 0.0
     notes = (f"linear, slow against the sampling: up to {off:.2g} % off the exact limit, to either side",)
@@ -329,7 +334,7 @@ def bounds(device: AnyDevice, *, law: LawName = "zoh", B: float = 0.0) -> Bounds
 def _plain(law, author):
     choice("law", law, TAPS)
     if law != "zoh":
-        eq = "looks at a velocity, so it is no position law" if law == "half_sample" else "looks ahead by its memory"
+        eq = "uses a velocity, so it is not a position law" if law == "half_sample" else "predicts from past samples"
         raise AnalysisError(f"law {law} {eq}; {author}'s formula is for the plain spring, Eq. (23.1): law zoh")
 
 
@@ -337,6 +342,10 @@ def _two_modes(b, T, coulomb, counts, periods, source):
     """Return the lesser of what viscous damping pays for the hold and Coulomb friction for the encoder."""
     hold = b / (T * periods)
     encoder = 2 * coulomb * counts if counts else math.inf
-    binds = f"b = {b:g} N s/m pays for the hold" if hold <= encoder else f"f_c = {coulomb:g} N pays for the encoder"
+    binds = (
+        f"b = {b:g} N s/m dissipates at least the energy that the hold generates"
+        if hold <= encoder
+        else f"f_c = {coulomb:g} N dissipates at least the energy that the encoder generates"
+    )
     notes = ("handle of mass, viscous and Coulomb friction, one encoder on the handle", "plain spring, no virtual damper")
     return Limit(min(hold, encoder), None, PASSIVITY, f"{source}: {binds}", notes)

@@ -102,8 +102,8 @@ class PassivityMargin(ShowsItself):
         verdict = "passive in every passive hand" if self.passive else "not passive"
         at = f"at {self.frequency:.4g} Hz" if self.frequency else "at every frequency alike" if self.flat else "for slow motion"
         return (
-            f"{self.law.name}: {verdict}. It asks for b = {self.required:.6g} N s/m, {at}; the device "
-            f"has {self.b:.6g} N s/m, {abs(self.margin):.3g} {'to spare' if self.passive else 'too little'}"
+            f"{self.law.name}: {verdict}. It needs b = {self.required:.6g} N s/m, {at}; the device has {self.b:.6g} N s/m, "
+            f"{abs(self.margin):.3g} {'to spare' if self.passive else 'too little'}"
         )
 
 
@@ -144,7 +144,7 @@ def passivity_margin(device: AnyDevice, law: LinearLaw) -> PassivityMargin:
     if pole is not None:
         raise AnalysisError(f"{law.name}: unstable with the handle held (a pole at {pole:.6g}); needs a stable law")
     if law.stiffness < 0:
-        raise AnalysisError(f"{law.name}: {negative(law.stiffness)}, and no damping of a device keeps it; needs H(1) >= 0")
+        raise AnalysisError(f"{law.name}: {negative(law.stiffness)}, and no device damping can hold it; needs H(1) >= 0")
     most, theta = required(law.A, law.B, law.C, law.D, law.T, delay)
     return PassivityMargin(law, b, delay, most, theta / (2 * math.pi * law.T))
 
@@ -255,7 +255,10 @@ def least_passive_stiffness(law: Callable[[float], LinearLaw]) -> float:
     own = law(0.0).stiffness
     rise = law(1.0).stiffness - own
     if not rise > 0:
-        raise AnalysisError(f"{law(1.0).name}: its stiffness at rest does not grow with K; a largest K needs one that does")
+        raise AnalysisError(
+            f"{law(1.0).name}: its stiffness at rest does not grow with K, so there is no largest K; give a "
+            "law whose stiffness grows with K"
+        )
     return max(-own / rise, 0.0)
 
 

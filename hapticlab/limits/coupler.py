@@ -117,13 +117,18 @@ def coupler_design(device: AnyDevice, *, b_c: float | None = None) -> CouplerDes
     300.0
     """
     b, T, delay = known(device, "b", "T", "delay")
-    b = number("b", b, "N s/m", "a coupler", above=0, what="a device of b", why="it pays for the hold")
+    b = number(
+        "b", b, "N s/m", "a coupler", above=0, what="a device of b", why="it dissipates the energy that the hold generates"
+    )
     most = _most_damping(b, T, delay)
     if b_c is None:
         b_c = _best_damping(b, T, delay, most)
     b_c = number("b_c", b_c, "N s/m", "a coupler's damper", least=0)
     if b_c > most:
-        raise AnalysisError(f"b_c = {b_c:g} N s/m; a device of b = {b:g} N s/m carries at most {most:.6g}: its own pays for it")
+        raise AnalysisError(
+            f"b_c = {b_c:g} N s/m; with a device damping of b = {b:g} N s/m the coupler's damping needs to "
+            f"be at most {most:.6g} N s/m, because the device must dissipate the energy that it generates"
+        )
     k_c, theta = _stiffest(b_c, b, T, delay)
     return CouplerDesign(k_c, b_c, hertz(_stops(b_c, b, T, delay), theta, T), b, T, delay)
 

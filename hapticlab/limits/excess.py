@@ -94,9 +94,13 @@ class Ledger(Tabular):
         return " ".join(str(self).split("\n")[len(self.entries)].split())
 
     def __str__(self) -> str:
-        told = "passive in every passive hand" if self.passive else "nothing proved: more is spent than there is"
+        told = (
+            "passive in every passive hand"
+            if self.passive
+            else ("passivity is not proved: the terms need more damping than there is")
+        )
         if not self.bounded and self.index >= 0:
-            told = "nothing proved: is the energy bounded below? If it is, say bounded=True"
+            told = "passivity is not proved, because the energy may have no lower bound. If it has one, give bounded=True"
         rows = [str(entry) for entry in self.entries]
         return "\n".join([*rows, f"{'left':<12}{self.index:+12.6g} N s/m   {told}", *(f"  {a}" for a in self.assumptions)])
 
@@ -178,8 +182,8 @@ def passivity_ledger(
     stiff, damped = max(abs(k_min), abs(k_max)), max(abs(B_min), abs(B_max))
     if k_max <= 0 > k_min:
         raise AnalysisError(
-            f"K = {K} N/m; no slope is positive, so the energy has no lower bound, the handle falls off, and no damping keeps "
-            "it. Needs a largest stiffness > 0, as of a detent that ends, or K = 0"
+            f"K = {K} N/m; no slope is positive, so the energy has no lower bound, the handle moves away, and no damping "
+            "can hold it. Give a largest stiffness > 0, such as that of a detent that ends, or K = 0"
         )
     late = delay + T * bool(delayed)
     entries = [Entry("device", b, "output-strictly passive by its own damping b")]
@@ -195,7 +199,7 @@ def passivity_ledger(
                 for name, index, reason in parts]  # fmt: skip
     notes = ["device damping b alone: no encoder, no Coulomb friction"]
     if k_min < 0:
-        notes.append(f"down to {k_min:g} N/m of local stiffness costs the hold nothing where the energy is bounded below")
+        notes.append(f"a local stiffness down to {k_min:g} N/m makes the hold generate no energy if the energy is bounded below")
     return Ledger(tuple(entries), tuple(notes), bool(bounded) or k_min >= 0)
 
 

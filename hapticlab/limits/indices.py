@@ -67,9 +67,13 @@ class PassivityIndices(ShowsItself):
         return f"passivity indices of {self.name}: nu = {self.nu:+.4g} N s/m, eps = {self.eps:+.4g} m/(N s)"
 
     def __str__(self) -> str:
-        nu = f"short, a damper of {-self.nu:.6g} N s/m beside it pays" if self.nu < 0 else "in excess"
-        eps = f"short, a dashpot in line that yields {-self.eps:.6g} m/s a newton pays" if self.eps < 0 else "in excess"
-        eps = eps if math.isfinite(self.eps) else "motion there makes no force, and no dashpot in line is enough"
+        nu = f"not passive; a damper of {-self.nu:.6g} N s/m in parallel makes it passive" if self.nu < 0 else "in excess"
+        eps = (
+            f"not passive; a dashpot in series that yields {-self.eps:.6g} m/s per newton makes it passive"
+            if self.eps < 0
+            else "in excess"
+        )
+        eps = eps if math.isfinite(self.eps) else "a motion at this frequency makes no force, so no dashpot in series is enough"
         return "\n".join([
             self.name,
             f"  input-strict   nu = {self.nu:+.6g} N s/m, at {_told(self.nu_frequency)}: {nu}",
@@ -102,15 +106,15 @@ def passivity_indices(law: LinearLaw) -> PassivityIndices:
     >>> import hapticlab as hl
     >>> print(hl.passivity.indices(hl.laws.LinearLaw.of("backward_difference", K=200.0, T=1e-3)))
     backward_difference, K = 200 N/m
-      input-strict   nu = -0.2 N s/m, at 500 Hz: short, a damper of 0.2 N s/m beside it pays
-      output-strict eps = -5 m/(N s), at 500 Hz: short, a dashpot in line that yields 5 m/s a newton pays
+      input-strict   nu = -0.2 N s/m, at 500 Hz: not passive; a damper of 0.2 N s/m in parallel makes it passive
+      output-strict eps = -5 m/(N s), at 500 Hz: not passive; a dashpot in series that yields 5 m/s per newton makes it passive
     """
     instance("law", law, LinearLaw, "a LinearLaw, as hl.laws.LinearLaw.of('zoh', K=200, T=1e-3)")
     margin = passivity_margin(Device(b=0.0), law)
     theta = math.pi * np.arange(1, GRID + 1) / GRID
     size = np.abs(law.at(theta)).max()
     if size == 0:
-        raise AnalysisError(f"{law.name}: no force at any motion, so nothing to index; needs a law with a force")
+        raise AnalysisError(f"{law.name}: the force is zero for every motion, so there are no indices; give a law with a force")
     zeros = _zeros(law)
     on = np.array([one for one in zeros[abs(abs(zeros) - 1) < ON_CIRCLE] if abs(law.at(np.angle(one))) < ZERO * size])
     poles = np.angle(on)

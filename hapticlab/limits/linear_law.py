@@ -107,8 +107,8 @@ class LinearLaw(ShowsItself):
         choice("law", law, TAPS)
         if LEAD[law]:
             raise AnalysisError(
-                f"law {law}, Eq. (23.3), looks at the exact velocity: it is no position law and has no H(z). "
-                "With a velocity estimated by backward difference it is the law backward_difference"
+                f"law {law}, Eq. (23.3), uses the exact velocity, so it is not a position law and has no H(z). With a "
+                "velocity estimated by backward difference it is the law backward_difference"
             )
         K = number("K", K, "N/m", what="stiffness")
         T = period(T)
@@ -164,7 +164,7 @@ class LinearLaw(ShowsItself):
         """Refuse a device of another sampling period [s]; None is not known."""
         if T is not None and not abs(self.T - T) <= 1e-9 * T:
             raise AnalysisError(
-                f"{self.name} is a law of T = {self.T:g} s; the paddle samples every {T:g} s: make the law for that"
+                f"{self.name} is a law with T = {self.T:g} s, but the paddle samples every {T:g} s. Make the law for that period"
             )
 
     def named(self, name: str) -> LinearLaw:
@@ -176,7 +176,7 @@ class LinearLaw(ShowsItself):
         if not isinstance(other, LinearLaw):
             raise AnalysisError(f"{self.name} + {other!r}; needs a second LinearLaw, as LinearLaw.of_taps([1.0], T=1e-3)")
         if self.T != other.T:
-            raise AnalysisError(f"laws of T = {self.T:g} s and {other.T:g} s; needs one sampling period for both")
+            raise AnalysisError(f"the laws have T = {self.T:g} s and {other.T:g} s; both need the same sampling period")
         A = np.block([[self.A, np.zeros((len(self.A), len(other.A)))], [np.zeros((len(other.A), len(self.A))), other.A]])
         both = (np.r_[self.B, other.B], np.r_[self.C, other.C], self.D + other.D)
         return LinearLaw(A, *both, self.T, f"{self.name} + {other.name}")
@@ -231,7 +231,7 @@ class LinearLaw(ShowsItself):
             The law remembers for ever, as a filtered velocity does; read :meth:`impulse` or :meth:`at`.
         """
         if not self.finite:
-            raise AnalysisError(f"{self.name}: its memory does not end, so it has no finite taps; read .impulse(count)")
+            raise AnalysisError(f"{self.name}: its impulse response does not end, so it has no finite taps. Use .impulse(count)")
         response = self.impulse(len(self.A) + 1)
         kept = np.flatnonzero(np.abs(response) > ROUNDING * np.abs(response).max())
         return response[: kept[-1] + 1] if len(kept) else response[:1]

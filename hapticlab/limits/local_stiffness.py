@@ -62,7 +62,7 @@ def local_stiffness(scene: Scene, x_low: Number, x_high: Number) -> tuple[float,
     others = {a for a in F.atoms(sp.Function) if hasattr(type(a), "role")} | (F.free_symbols - {place})
     if others:
         named = ", ".join(sorted(map(str, others)))
-        raise AnalysisError(f"{scene.name}: its force holds {named}; a local stiffness needs a function of x(n) alone")
+        raise AnalysisError(f"{scene.name}: its force contains {named}; a local stiffness needs a function of x(n) alone")
     written = sp.lambdify(place, F, "numpy")
 
     def force(at):
@@ -77,9 +77,9 @@ def local_stiffness(scene: Scene, x_low: Number, x_high: Number) -> tuple[float,
     where = _jump(force, at, values)
     if where is not None:
         raise AnalysisError(
-            f"{scene.name}: its force jumps near x = {where:.4g} m, or is too steep there to be told from a jump, and no "
-            "stiffness bounds it: a handle that goes back and forth there draws the same energy however small its steps, "
-            "which no damping pays for"
+            f"{scene.name}: its force jumps near x = {where:.4g} m, or is so steep there that it cannot be distinguished "
+            "from a jump, so its local stiffness has no bound. A handle that moves back and forth there draws the same "
+            "energy however small its steps, and no damping dissipates that much. Replace the jump by a ramp"
         )
     slopes = np.diff(values) / np.diff(at)
     return float(slopes.min()), float(slopes.max())

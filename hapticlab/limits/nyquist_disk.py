@@ -128,7 +128,9 @@ def nyquist_disk(device: AnyDevice, law: LinearLaw) -> NyquistDisk:
     margin = passivity_margin(device, law)
     number("b", margin.b, "N s/m", "a disk of finite size", above=0)
     if math.isinf(margin.required):
-        raise AnalysisError(f"{law.name}: a resonance without damping reaches every circle; needs a law that damps its own")
+        raise AnalysisError(
+            f"{law.name}: a resonance without damping reaches every circle; needs a law whose resonances are damped"
+        )
     if float(margin.asked([math.pi])[0]) >= margin.required * (1 - 1e-9):  # all alike, or there alone
         worst = math.pi
     else:

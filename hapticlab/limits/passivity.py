@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     from .affine_law import StiffnessLaw
 
 KIND = AnyHand("passivity: any passive hand, sufficient")
-SWITCHING_NOT_COVERED = "the spring always acts: the switching of a unilateral wall is not covered"
-NO_DAMPING = "b = 0: without device damping nothing pays for the hold"
-NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
+SWITCHING_NOT_COVERED = "the spring always acts; the switching of a unilateral wall is not accounted for"
+NO_DAMPING = "b = 0: without device damping nothing dissipates the energy that the hold generates"
+NO_VELOCITY = "its exact velocity jumps at the samples, so a hand that moves only there draws energy at any stiffness"
 
 
 def passivity_limit(
@@ -100,7 +100,8 @@ def passivity_limit(
     if not isinstance(law, str):
         if tau:
             raise AnalysisError(
-                f"velocity_filter = {tau:g} s beside a law of its own; only a named law takes one: put the filter into the law, "
+                f"velocity_filter = {tau:g} s with a law of your own; only a named law has a velocity filter. Put the "
+                "filter into the law, "
                 'as hl.wall(velocity=hl.velocity.filtered(tau="4 ms"), unilateral=None)'
             )
         _checked(T, B, delay, "zoh")
@@ -119,10 +120,12 @@ def passivity_limit(
     beta = B / b
     _, margin = _worst(_law_taps(0.0, beta, law), whole, fraction, 1.0)
     if margin < 0:
-        return Limit(0.0, None, KIND, f"B = {B:g} N s/m alone is active: it needs more than b = {b:g} N s/m", notes)
+        return Limit(
+            0.0, None, KIND, f"B = {B:g} N s/m is not passive even without the spring: it needs more than b = {b:g} N s/m", notes
+        )
     kappa, u = _falling_cuts(lambda k: _law_taps(k, beta, law), whole, fraction)
     frequency = None if u is None else math.acos(u) / (2 * math.pi * T)
-    reason = f"b = {b:g} N s/m is spent, {_place(frequency, T)}"
+    reason = f"b = {b:g} N s/m is just enough, {_place(frequency, T)}"
     return Limit(float(kappa * b / T), frequency, KIND, reason, (*notes, _unilateral(law, delay)))
 
 
@@ -166,10 +169,10 @@ def _of_any_law(law, b, delay, name, notes):
     """The limit by a search over frequencies, of a function of K that gives a LinearLaw."""
     K, hertz = largest_passive_stiffness(law, b=b, delay=delay)
     if not K:
-        return Limit(0.0, None, KIND, f"{name}: active without its spring already, on b = {b:g} N s/m", notes)
+        return Limit(0.0, None, KIND, f"{name}: not passive even without its spring, with b = {b:g} N s/m", notes)
     least = least_passive_stiffness(law)
-    from_on = f", passive only from K = {least:.6g} N/m on: below it its stiffness at rest is negative" if least else ""
-    reason = f"b = {b:g} N s/m is spent, {_place(hertz, law(K).T)}; {name}{from_on}"
+    from_on = f", passive only above K = {least:.6g} N/m, because below it the stiffness at rest is negative" if least else ""
+    reason = f"b = {b:g} N s/m is just enough, {_place(hertz, law(K).T)}; {name}{from_on}"
     return Limit(K, hertz, KIND, reason, (*notes, _unilateral(name, delay)))
 
 

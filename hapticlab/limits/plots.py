@@ -75,7 +75,7 @@ def plot_passivity_margin(margin: PassivityMargin) -> Figure:
         axes.axhline(margin.b, label="the device's b", **STYLES[5])
         if np.isfinite(margin.required):
             axes.plot(margin.frequency, margin.required, "ko", markersize=5)
-        axes.set(xlim=(0, frequency[-1]), xlabel="frequency [Hz]", ylabel="damping asked for [N s/m]")
+        axes.set(xlim=(0, frequency[-1]), xlabel="frequency [Hz]", ylabel="damping needed [N s/m]")
         forbid(axes, margin.b, "not passive: more than the device has")
         late = f", delay {1e3 * margin.delay:g} ms" if margin.delay else ""
         axes.set_title(f"{margin.law.name}, T = {1e3 * margin.law.T:g} ms{late}", fontsize="small")
@@ -187,7 +187,7 @@ def plot_admittance(design: AdmittanceDesign) -> Figure:
         left.legend(fontsize="small", **FRAME)
         right.plot(frequency, design.two_port.h(theta)[:, 0, 0].real, label="environment at rest", **STYLES[0])
         right.plot(frequency, design.two_port.least_resistance(theta), label="worst environment", **STYLES[1])
-        right.set(ylabel="Re of what the hand feels [m/s/N]")
+        right.set(ylabel="Re of the admittance felt [m/s/N]")
         right.legend(fontsize="small", **FRAME)
         for axes in (left, right):
             axes.set(xlabel="frequency [Hz]", xlim=(0, 0.5 / T))
@@ -277,11 +277,13 @@ def plot_law(law: LinearLaw) -> Figure:
         above, below = figure.subplots(2, 1, sharex=True)
         above.plot(frequency, felt.real, **STYLES[0])
         above.set(ylabel="felt stiffness [N/m]")
-        above.set_title(f"{law.name}: as a sinusoid feels it, sampled and held", fontsize="small", wrap=True)
+        above.set_title(f"{law.name}: response to a sinusoid, sampled and held", fontsize="small", wrap=True)
         damping = felt.imag / omega
         below.plot(frequency, damping, **STYLES[0])
         if (damping < 0).any():
-            below.fill_between(frequency, damping, 0, where=damping < 0, **HATCHED, label="negative: it feeds energy to the hand")
+            below.fill_between(
+                frequency, damping, 0, where=damping < 0, **HATCHED, label="negative: it supplies energy to the hand"
+            )
             below.legend(fontsize="small", **FRAME)
         below.axhline(0.0, color="#4d4d4d", linewidth=0.8)
         below.set(xlabel="frequency [Hz]", ylabel="felt damping [N s/m]", xlim=(0, 0.5 / law.T))

@@ -77,9 +77,7 @@ def port_damping(device: AnyDevice, scene: Scene, **options: Any) -> float:
         raise AnalysisError(f"{scene.name}: unstable with the handle held (a pole at {pole:.6g}); T is too long for it")
     stiffness = static_stiffness(A, B, C, D)
     if stiffness < 0:
-        raise AnalysisError(
-            f"{scene.name}: {negative(stiffness)}, and no damping of a device keeps it; needs k >= 0 felt at rest"
-        )
+        raise AnalysisError(f"{scene.name}: {negative(stiffness)}, and no device damping can hold it; needs k >= 0 felt at rest")
     return required(A, B, C, D, T, delay)[0]
 
 
@@ -98,7 +96,7 @@ def static_stiffness(A, B, C, D):
 
 def negative(stiffness):
     """Return in words what a negative static stiffness [N/m] does."""
-    return f"negative stiffness, {stiffness:.4g} N/m: a free handle falls"
+    return f"negative stiffness, {stiffness:.4g} N/m: a free handle moves away"
 
 
 def unstable_pole(A, B, C, allowed=0):
@@ -153,7 +151,7 @@ def tick_map(program: Program) -> tuple[Array, Array, Array, float]:
         The program is not linear, or takes more than x.
     """
     if len(program.inputs) != 1 or is_timed(program):
-        raise AnalysisError(f"{program.name}: needs a force of x alone, that time does not drive")
+        raise AnalysisError(f"{program.name}: needs a force that depends on x alone and not on time")
     S, generator = len(program.states), np.random.default_rng(1)
     mixed = generator.normal(size=(S, 3))
     states = np.column_stack([np.zeros((S, 1)), np.eye(S), mixed])

@@ -142,7 +142,9 @@ def _stiffnesses(K, limit, found, loop):
     except (TypeError, ValueError):
         given = np.array([])
     if len(given) < 2 or not np.isfinite(given).all() or given[0] < 0:
-        raise AnalysisError(f"K = {K!r}; a root locus needs two or more finite stiffnesses >= 0 N/m, as np.linspace(0, 500, 50)")
+        raise AnalysisError(
+            f"K = {K!r}; a root locus needs two or more finite stiffnesses >= 0 N/m, such as np.linspace(0, 500, 50)"
+        )
     return given
 
 

@@ -36,7 +36,8 @@ if TYPE_CHECKING:
 KIND = "exact linear stability of this plant"
 NOTES = (
     "handle, hand, delay and law alone, the spring always acting",
-    "ignores encoder, noise, Coulomb friction, force limit and the hand's push; a unilateral wall can chatter earlier",
+    "does not account for encoder, noise, Coulomb friction, force limit and the hand's push; a unilateral wall can chatter "
+    "at a lower stiffness",
 )
 ESTIMATED = "the paddle estimates v by backward difference, so half_sample is the law backward_difference, Eq. (23.5)"
 #: how far from 1 the largest |pole| at a limit may be; a law of hundreds of samples has a polynomial of no digits
@@ -92,8 +93,7 @@ def stability_limit(device: AnyDevice, *, law: StiffnessLaw = "zoh", B: float = 
     notes = NOTES + (ESTIMATED,) * bool(estimated)
     if not any(part.any() for part in (loop.law.B1, loop.law.C1, loop.law.D1)):
         raise AnalysisError(
-            f"{loop.law.name} does not depend on a stiffness; give a scene with {parameter} unbound, or look at "
-            "hl.stability.poles"
+            f"{loop.law.name} does not depend on a stiffness. Give a scene with {parameter} unbound, or use hl.stability.poles"
         )
     edges, stable = _intervals(loop)
     if stable[0] and all(stable):
@@ -102,7 +102,8 @@ def stability_limit(device: AnyDevice, *, law: StiffnessLaw = "zoh", B: float = 
     K, theta = edges[first - 1] if first else (0.0, None)
     if first and abs(abs(1 + loop.poles(K)).max() - 1) > ON_CIRCLE:
         raise AnalysisError(
-            f"{loop.law.name}: {len(loop.law.A)} states, whose polynomial loses digits; read hl.stability.poles(K=...), K by K"
+            f"{loop.law.name}: {len(loop.law.A)} states, too many for an accurate characteristic polynomial. Use "
+            "hl.stability.poles(K=...) for each K"
         )
     reason = "a pole crosses the unit circle" if first else _why_none(device, law, B, any(stable))
     again = next((i for i in range(first, len(stable)) if stable[i]), None)
@@ -189,17 +190,19 @@ def _loop_at(device, K, law, B, parameter):
     if K is None and isinstance(law, (LinearLaw, Scene)):
         return Loop.of(device, law, B, None), 0.0  # what holds its own is the same at every K
     if K is None:
-        raise AnalysisError("K = None, and the law holds no stiffness; needs one in N/m: hl.stability.poles(..., K=100)")
+        raise AnalysisError("K = None, and the law contains no stiffness. Give one in N/m: hl.stability.poles(..., K=100)")
     K = number("K", K, "N/m", what="stiffness")
     if isinstance(law, LinearLaw):
-        raise AnalysisError(f"K = {K:g} N/m beside {law.name}, which holds its own stiffness; leave K out")
+        raise AnalysisError(f"K = {K:g} N/m with {law.name}, which has its own stiffness. Leave out K")
     if isinstance(law, Scene) and parameter in law.values:
         raise AnalysisError(
-            f"K = {K:g} N/m beside {law.name} with {parameter} = {law.values[parameter]:g}; "
-            f"leave K out, or bind it there: scene({parameter}={K:g})"
+            f"K = {K:g} N/m with {law.name} with {parameter} = {law.values[parameter]:g}. Leave out K, or bind it in the "
+            f"scene: scene({parameter}={K:g})"
         )
     if isinstance(law, Scene) and parameter not in law.parameters and set(law.parameters) <= set(law.values):
-        raise AnalysisError(f"K = {K:g} N/m, but {law.name} has no parameter {parameter}; leave K out, or name its stiffness")
+        raise AnalysisError(
+            f"K = {K:g} N/m, but {law.name} has no parameter {parameter}. Leave out K, or name the stiffness with parameter="
+        )
     return Loop.of(device, law, B, parameter), K
 
 
@@ -210,7 +213,7 @@ def _why_none(device, law, B, somewhere):
     undamped = b == 0 and (hand is None or hand.b == 0)
     which = "at the smallest stiffness" if somewhere else "at any stiffness"
     if undamped and not B:
-        return f"without damping (b = 0) law {name} feeds energy in {which}"
+        return f"without damping (b = 0) law {name} generates energy {which}"
     damper = f"B = {B:g} N s/m with " if B else ""
     return f"{damper}b = {b:g} N s/m under law {name} is unstable {which}"
 

@@ -38,8 +38,8 @@ class Border(ShowsItself):
 
     def __str__(self) -> str:
         if math.isnan(self.lowest):
-            return f"an undecided stiffness: from {min(self.fails_at):.3g} N/m on some trials could not tell"
-        more = ", and no more was asked for" if math.isinf(max(self.fails_at)) else ""
+            return f"an undecided stiffness: above {min(self.fails_at):.3g} N/m some trials were undecided"
+        more = ", the most that was searched" if math.isinf(max(self.fails_at)) else ""
         between = f"{self.lowest:.5g}" if self.lowest == self.highest else f"{self.lowest:.5g} to {self.highest:.5g}"
         starts = "start" if len(self.K) == 1 else f"{len(self.K)} starts"
         return f"{between} N/m over {starts}{more}"

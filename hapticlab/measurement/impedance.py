@@ -170,13 +170,13 @@ def _blocks(log, samples, blocks, skip):
     """x, F and the scene's own part of F as blocks of one period, shape (B, N)."""
     if log.fault or log.gap.any() or log.every > 1 or len(log) < skip + blocks * samples:
         raise PaddleError(
-            f"hl.measure.impedance: the record is not whole: {log.fault or 'samples were lost or left out'}. Drive less, "
-            "hold the handle, or measure with a longer T"
+            f"hl.measure.impedance: the record is incomplete: {log.fault or 'samples were lost or left out'}. Use a smaller "
+            "excitation, hold the handle, or measure with a longer T"
         )
     if "own" in log.channels and log.saturated is not None and log.saturated.any():
         raise PaddleError(
-            "hl.measure.impedance: the motor came to its limit, so nothing in the record is linear: drive less, or give a "
-            "place= nearer to the boundary"
+            "hl.measure.impedance: the motor reached its limit, so the record is not linear. Use a smaller excitation, or "
+            "give a place= nearer to the boundary"
         )
     columns = [log.channels.get("x_true", log.x), log.F, log.channels.get("own", log.F)]
     return [c[skip : skip + blocks * samples].reshape(blocks, samples) for c in columns]

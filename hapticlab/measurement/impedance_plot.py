@@ -21,7 +21,7 @@ def plot_impedance(found: MeasuredImpedance) -> Figure:
         figure = new_figure(height=2.6 * panels)
         axes = figure.subplots(panels, 1, sharex=True)
         f = found.frequency
-        curves = [("law's own, held", found.law)] + ([("ideal", found.ideal)] if found.ideal is not None else [])
+        curves = [("law alone, held", found.law)] + ([("ideal", found.ideal)] if found.ideal is not None else [])
         for i, (label, Z) in enumerate(curves):
             axes[0].plot(f, abs(Z), **style_of(i + 1), label=label)
             axes[1].plot(f, Z.real, **style_of(i + 1))

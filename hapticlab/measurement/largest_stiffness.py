@@ -84,9 +84,9 @@ class LargestStiffness(ShowsItself):
 
     def __str__(self) -> str:
         if not self.trials:
-            return f"{self.law}: no trial was made, as no stiffness helps: {self.theory['stability'].reason}"
+            return f"{self.law}: no trial was made, because no stiffness is stable: {self.theory['stability'].reason}"
         if math.isnan(self.K):
-            head = "undecided, some trials could not tell"
+            head = "undecided, because some trials were undecided"
         elif self.K == 0:
             head = f"no stiffness comes to rest quietly, down to {self.fails_at:.3g} N/m"
         else:

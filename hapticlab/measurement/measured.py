@@ -81,7 +81,10 @@ class MeasuredImpedance(Tabular):
     def handle(self) -> NDArray[np.complex128]:
         """Impedance that a simulated hand feels where it drives [N s/m], device included, as by a force sensor between them."""
         if self.drive != "hand":
-            raise AnalysisError("the motor drove, and a paddle has no force sensor: what the hand feels was not observed")
+            raise AnalysisError(
+                "the motor was the excitation, and a paddle has no force sensor, so the impedance that the "
+                "hand feels was not observed"
+            )
         return self.other.value
 
     @property
@@ -94,7 +97,7 @@ class MeasuredImpedance(Tabular):
     def mechanics(self) -> NDArray[np.complex128]:
         """Impedance of device and hand together, where the motor drives [N s/m]; true if its force is the computed one."""
         if self.drive != "motor":
-            raise AnalysisError("the hand drove; measure the mechanics that the motor moves with drive='motor'")
+            raise AnalysisError("the hand was the excitation. To measure the mechanics that the motor moves, give drive='motor'")
         return self.other.value
 
     @property
@@ -109,7 +112,7 @@ class MeasuredImpedance(Tabular):
 
     def _meant(self):
         if self.ideal is None:
-            raise AnalysisError("the ideal impedance is not known; give it: hl.measure.impedance(..., ideal=lambda s: k/s + b)")
+            raise AnalysisError("the ideal impedance is not known. Give it: hl.measure.impedance(..., ideal=lambda s: k/s + b)")
         return self.ideal
 
     @property
@@ -155,10 +158,11 @@ class MeasuredImpedance(Tabular):
 
     def _warnings(self):
         left, unsure = self.left_wall, np.nanmax(self.other.radius / abs(self.other.value), initial=0.0)
-        lines = [f"the handle left the wall in {left} samples: press deeper or drive less"] if left else []
+        lines = [f"the handle left the wall in {left} samples; press deeper or use a smaller excitation"] if left else []
         if unsure > UNSURE:
             lines.append(
-                f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %: noise, or not settled: Averaging(settle=...)"
+                f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %, because of noise or because the motion had "
+                "not settled: give a longer Averaging(settle=...)"
             )
         return lines
 

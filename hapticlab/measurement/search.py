@@ -83,7 +83,7 @@ class Starts(ShowsItself):
         hands = _each(self.hands)
         if not run_ups or not all(isinstance(hand, Hand) for hand in hands):
             raise AnalysisError(
-                f"run_ups = {run_ups}, hands = {hands}; a start needs one run-up at least, and hands as hl.Hand('pinch')"
+                f"run_ups = {run_ups}, hands = {hands}; a start needs at least one run-up, and hands such as hl.Hand('pinch')"
             )
         for name, value in {"run_ups": run_ups, "pushes": pushes, "hands": hands}.items():
             object.__setattr__(self, name, value)

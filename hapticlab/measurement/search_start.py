@@ -25,7 +25,8 @@ def durations_of(paddle, duration, longest):
     for name, value in (("duration", duration), ("longest", longest)):
         if value is not None and not FEWEST * paddle.T <= value < math.inf:
             raise AnalysisError(
-                f"{name} = {value:g} s; a trial needs {FEWEST} samples, {name}={FEWEST * paddle.T:g} at least, and an end"
+                f"{name} = {value:g} s; a trial needs at least {FEWEST} samples, so {name} needs to be "
+                f"{FEWEST * paddle.T:g} s or more, and finite"
             )
 
     def durations(K):
@@ -82,7 +83,7 @@ def _pushes(paddle, push, place, seconds):
     if hand is not None:
         if hand.push_noise:
             raise AnalysisError(
-                f"the hand's force is noise of {hand.push_noise:g} N, which never lets a handle rest; search with Hand(noise=0)"
+                f"the hand's force has noise of {hand.push_noise:g} N, so the handle never rests. Search with Hand(noise=0)"
             )
         ticks = max(1, round(seconds / paddle.T))
         at = float(np.mean(hand.samples(ticks, paddle.T))) if hand.moves else hand.intent or 0.0
@@ -95,8 +96,8 @@ def _pushes(paddle, push, place, seconds):
         )
     if push + leaning >= most:
         raise AnalysisError(
-            f"a push of {push + leaning:g} N on a paddle whose motor gives {most:g} N at most: no wall of it can answer "
-            f"that; needs less, as Starts(pushes={OF_LIMIT * most - leaning:.3g})"
+            f"a push of {push + leaning:g} N on a paddle whose motor gives at most {most:g} N: no wall can resist this "
+            f"push. Give a smaller one, such as Starts(pushes={OF_LIMIT * most - leaning:.3g})"
         )
     return push, leaning
 

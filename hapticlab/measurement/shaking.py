@@ -41,13 +41,14 @@ def most_force(paddle, pull, amplitude, force_max):
     stands = motor_stands(paddle)
     if stands is None:
         raise PaddleError(
-            "hl.measure.impedance: the board has no calibration, so what its motor stands is not known: run `hapticlab "
-            "calibrate` first."
+            "hl.measure.impedance: the board has no calibration, so the largest force of its motor is not known. Run "
+            "`hapticlab calibrate` first."
         )
     if abs(pull) + amplitude > stands:
         raise PaddleError(
-            f"hl.measure.impedance: {abs(pull):.3g} N to hold the place and {amplitude:.3g} N to shake the handle are more "
-            f"than the {stands:.3g} N that the motor stands for long; give a place= nearer to the boundary, or a smaller "
+            f"hl.measure.impedance: {abs(pull):.3g} N to hold the position and {amplitude:.3g} N to shake the handle are "
+            f"more than the {stands:.3g} N that the motor can give continuously. Give a place= nearer to the boundary, or a "
+            "smaller "
             "excitation=hl.measure.Excitation(amplitude=...)"
         )
     return min(stands, abs(pull) + ROOM * amplitude) if force_max is None else min(force_max, paddle.settings.force_max)
@@ -59,8 +60,8 @@ def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force_max
     depth, at = abs(place - origin), paddle.state()["x"]
     if abs(at - place) > (depth or reach):
         raise PaddleError(
-            f"hl.measure.impedance: the handle was led to {1e3 * place:.3g} mm and is at {1e3 * at:.3g} mm: hold it there "
-            "lightly, or let go of it"
+            f"hl.measure.impedance: the handle was moved towards {1e3 * place:.3g} mm but is at {1e3 * at:.3g} mm. Hold it "
+            "lightly there, or release it"
         )
     rises = max(1, round(min(RISES, settle) / paddle.T))
     softly = replace(shaken, force=when(n < rises, n / rises, 1) * shaken.force)
@@ -69,14 +70,14 @@ def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force_max
     log = paddle.run(safe, duration=duration, force_max=force_max, progress=False, **options)
     if log.cut.any():
         raise PaddleError(
-            f"hl.measure.impedance: the motor was switched off after {log.t[log.cut.argmax()]:.3g} s, the handle moved "
-            f"further than {1e3 * reach:.3g} mm or faster than {fastest:.3g} m/s, as "
-            "safety=hl.measure.Safety(reach=, speed_max=) says: drive less, hold the handle, or take a softer wall"
+            f"hl.measure.impedance: the motor was switched off after {log.t[log.cut.argmax()]:.3g} s, because the handle "
+            f"moved further than {1e3 * reach:.3g} mm or faster than {fastest:.3g} m/s, the limits of "
+            "safety=hl.measure.Safety(reach=, speed_max=). Use a smaller excitation, hold the handle, or use a softer wall"
         )
     if log.saturated is not None and log.saturated.any():
         raise PaddleError(
-            f"hl.measure.impedance: the force came to its limit of {force_max:.3g} N in {int(log.saturated.sum())} samples, so "
-            "nothing in the record is linear. It does so where a wall chatters: hold the handle, or take a softer wall; else "
-            "drive less, or allow more: safety=hl.measure.Safety(force_max=...)"
+            f"hl.measure.impedance: the force reached its limit of {force_max:.3g} N in {int(log.saturated.sum())} samples, "
+            "so the record is not linear. If the wall chatters, hold the handle, or use a softer wall. Otherwise use a "
+            "smaller excitation, or allow more force: safety=hl.measure.Safety(force_max=...)"
         )
     return log

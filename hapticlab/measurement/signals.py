@@ -89,8 +89,8 @@ def lines_of(frequency, T, period):
     asked = np.atleast_1d(np.asarray(frequency, float)) * samples * T
     if not asked.size or not np.isfinite(asked).all() or (asked <= 0).any() or (asked >= samples / 2).any():
         raise AnalysisError(
-            f"frequency = {frequency} Hz; needs frequencies between 0 and half the sampling rate, {0.5 / T:g} Hz, each "
-            f"a cycle or more in the period of {period:g} s"
+            f"frequency = {frequency} Hz; needs frequencies between 0 and half the sampling rate, {0.5 / T:g} Hz, each with "
+            f"at least one cycle in the period of {period:g} s"
         )
     odd = 2 * np.floor(asked / 2).astype(int) + 1
     return samples, np.unique(odd[odd < samples / 2])

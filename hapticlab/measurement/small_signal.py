@@ -45,7 +45,9 @@ def law_at(
         off[0, names.index(name)] += size
         answer = (engine.run(LONGEST, off, states=states).outputs[:, 0, 0] - still) / size
         if abs(answer[-LONGEST // 10 :]).max() > 1e-6 * abs(answer).max():
-            raise AnalysisError(f"{program.name}: its force does not forget a motion within {LONGEST} samples")
+            raise AnalysisError(
+                f"{program.name}: the response of its force to a motion does not die out within {LONGEST} samples"
+            )
         last = np.flatnonzero(abs(answer) > 1e-12 * abs(answer).max())
         answer = answer[: last[-1] + 1] if len(last) else answer[:1]
         found[name] = np.exp(-1j * np.outer(theta, np.arange(len(answer)))) @ answer

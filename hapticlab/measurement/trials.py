@@ -111,7 +111,7 @@ def try_wall(paddle, scene, start, *, K, place, duration, longest, buzz_max=0.05
     """
     needs = ENOUGH * period_on(paddle, K)
     if needs > longest * 1.001:
-        untried = f"not tried: three swings take {needs:.3g} s; needs Judgement(longest={needs:.2g})"
+        untried = f"not tried: three oscillations take {needs:.3g} s; needs Judgement(longest={needs:.2g})"
         return Trial(K, None, None, untried, start=str(start))
     duration = max(duration, min(needs, longest))
     while True:
@@ -141,7 +141,7 @@ def _judged(paddle, log, K, place, start, last, noise, buzz_max):
     x, count = log.channels.get("x_true", log.x), count_of(paddle)
     way = float(abs(x - place).max())
     if way < MOVED and start.run_up is not None:
-        return None, "the push did not move the handle: friction holds it; push harder", math.nan, found
+        return None, "the push did not move the handle, because friction holds it; push harder", math.nan, found
     felt, grows = ripple(log, driven=driven), found.state in ("growing", "runaway")
     leaves = bool(np.any(log.F[len(log.F) // 2 :] == 0))
     counted = 0 < 2 * found.amplitude <= (COUNTS_OUTSIDE if leaves else COUNTS) * count
@@ -151,12 +151,12 @@ def _judged(paddle, log, K, place, start, last, noise, buzz_max):
     elif found.state == "driven":
         rests = "it only follows the hand"
     elif 0 < found.amplitude < SCATTER * noise:
-        rests = "it rests but for the noise of its sensor"
+        rests = "it rests, apart from the noise of its sensor"
     elif last or not grows:
         if counted:
-            rests = "it dithers by encoder counts"
+            rests = "it buzzes by encoder counts"
         elif count and felt <= buzz_max:
-            rests = "it swings by less than is felt"
+            rests = "it oscillates by less than is felt"
     if rests:
         return True, rests, felt, found
     if found.state == "growing" and (last or not count or (felt > buzz_max and not counted)):
@@ -172,7 +172,7 @@ def _judged(paddle, log, K, place, start, last, noise, buzz_max):
     seconds = f"{log.t[-1]:.3g} s"
     if found.state in ("chatter", "runaway"):
         return False, "it lasts" if found.state == "chatter" else "it runs away", math.nan, found
-    ends = "it decays, onto a cycle perhaps" if found.state == "decaying" else "neither rest nor a cycle is in sight"
+    ends = "it decays, perhaps to a cycle" if found.state == "decaying" else "neither rest nor a cycle is in sight"
     return None, f"{ends} after {seconds}", ripples, found
 
 
@@ -187,10 +187,10 @@ def _stopped(log, x):
     if log.fault:  # a wall too soft for its push lets the handle through its travel as a wall that throws it does
         return (None if "OVER_TRAVEL" in log.fault else False), f"the paddle stopped: {log.fault}"
     if log.tripped.any() and log.x[0] - x > FARTHEST:
-        deep = f"the handle began {1e3 * (log.x[0] - x):.2g} mm too deep, and the guard cut the motor"
-        return None, f"{deep}: hold the handle loosely while the motor leads it back"
+        deep = f"the handle started {1e3 * (log.x[0] - x):.2g} mm too deep, and the guard switched off the motor"
+        return None, f"{deep}. Hold the handle loosely while the motor moves it back"
     if log.tripped.any():
-        return False, f"the guard cut the motor after {log.t[log.tripped.argmax()]:.3g} s"
+        return False, f"the guard switched off the motor after {log.t[log.tripped.argmax()]:.3g} s"
     return None
 
 
@@ -229,7 +229,7 @@ def lead_back(paddle, place, force_max=math.inf):
     log = paddle.run(safe, duration=TAKES, force_max=force_max, progress=False)
     if log.fault or log.tripped.any():
         raise PaddleError(
-            f"the handle could not be led back to {1e3 * place:.3g} mm with {LEADS_BACK:g} N/m: "
+            f"the handle could not be moved back to {1e3 * place:.3g} mm with {LEADS_BACK:g} N/m: "
             f"{(log.fault or 'it moved too fast').rstrip('.')}. Hold it there by hand, or check `hapticlab doctor`."
         )
 
@@ -244,5 +244,7 @@ def wall_of(law: LawName | Scene, parameter: str = "k") -> Scene:
     scene = law if isinstance(law, Scene) else wall(law)
     if parameter not in scene.parameters:
         known = ", ".join(scene.parameters) or "none"
-        raise PaddleError(f"{scene.name} has no parameter {parameter} to search; it has {known}. Name one: parameter=...")
+        raise PaddleError(
+            f"{scene.name} has no parameter {parameter} to search; it has {known}. Give one of these: parameter=..."
+        )
     return scene

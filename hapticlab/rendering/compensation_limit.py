@@ -108,7 +108,7 @@ class CompensationLimit(ShowsItself):
         g/k and keeps the part r of its swing. Infinite where the damping left is not positive.
         """
         if not self.k:
-            raise AnalysisError("no spring to hunt about: the hand has k = 0 N/m; look at speed(viscous, dry)")
+            raise AnalysisError("no spring to hunt about: the hand has k = 0 N/m. Use speed(viscous, dry)")
         if dry <= self.hunts_from(viscous):
             return 0.0
         kept = self._kept(viscous)
@@ -127,7 +127,7 @@ class CompensationLimit(ShowsItself):
 
     def _free(self, what):
         if self.k:
-            raise AnalysisError(f"{what} needs a free handle; the hand's k = {self.k:g} N/m holds it: look at hunting()")
+            raise AnalysisError(f"{what} needs a free handle; the hand's k = {self.k:g} N/m holds it. Use hunting()")
 
     def __str__(self) -> str:
         at = f", turning at {self.frequency:.4g} Hz" if self.frequency else ", drifting off"
@@ -136,11 +136,11 @@ class CompensationLimit(ShowsItself):
             f"  viscous    up to {self.viscous:.6g} of {self.b_device:g} N s/m{at}: exact linear stability of this plant",
         ]
         if self.coulomb:
-            then = "hunts about the hand's spring" if self.k else "keeps moving, once kicked"
-            lines.append(f"  dry        up to {self.dry:.6g} of {self.coulomb:g} N at viscous = 0; beyond, it {then}")
+            then = "hunts about the hand's spring" if self.k else "keeps moving after a push"
+            lines.append(f"  dry        up to {self.dry:.6g} of {self.coulomb:g} N at viscous = 0; above that, it {then}")
         if self.b_least < self.b_device or self.coulomb_least < self.coulomb:
             friction = f", Coulomb friction from {self.coulomb_least:.6g} N" if self.coulomb else ""
-            lines.append(f"  for every device of b from {self.b_least:.6g} N s/m{friction} up to that")
+            lines.append(f"  for every device with b from {self.b_least:.6g} N s/m{friction} up to these values")
         return "\n".join(lines)
 
     def plot(self) -> Figure:
@@ -156,16 +156,16 @@ class CompensationLimit(ShowsItself):
             axes.fill_between([0, wide], self.viscous, tall, color="0.7", linewidth=0)
             axes.fill_betweenx(parts, dry, wide, color="0.88", linewidth=0)
             axes.axhline(self.viscous, color="black", label="a pole crosses the unit circle")
-            axes.plot(dry, parts, color="black", linestyle="--", label="the force that is left over keeps it going")
+            axes.plot(dry, parts, color="black", linestyle="--", label="the remaining force keeps it moving")
             for place, words in (
                 ((0.5 * wide, 1.125 * self.viscous), "runs away"),
                 ((0.5 * self.hunts_from(middle), middle), "comes to rest"),
-                (((self.hunts_from(middle) + wide) / 2, middle), "hunts" if self.k else "keeps moving,\nonce kicked"),
+                (((self.hunts_from(middle) + wide) / 2, middle), "hunts" if self.k else "keeps moving\nafter a push"),
             ):
                 axes.text(*place, words, ha="center", va="center")
             axes.set(xlim=(0, wide), ylim=(0, tall))
-            axes.set_xlabel(f"part of the Coulomb friction compensated, of {self.coulomb:g} N")
-            axes.set_ylabel(f"part of the damping compensated,\nof {self.b_device:g} N s/m")
+            axes.set_xlabel(f"fraction of the Coulomb friction compensated, of {self.coulomb:g} N")
+            axes.set_ylabel(f"fraction of the damping compensated,\nof {self.b_device:g} N s/m")
             figure.legend(loc="outside upper center", ncols=2)
         return figure
 
@@ -180,7 +180,7 @@ class CompensationLimit(ShowsItself):
             axes.text(self.viscous / 2, 0.5, "comes to rest", ha="center", va="center")
             axes.text((self.viscous + end) / 2, 0.5, "runs away", ha="center", va="center")
             axes.set(xlim=(0, end), ylim=(0, 1), yticks=[])
-            axes.set_xlabel(f"part of the damping compensated, of {self.b_device:g} N s/m")
+            axes.set_xlabel(f"fraction of the damping compensated, of {self.b_device:g} N s/m")
             figure.legend(loc="outside upper center")
         return figure
 
@@ -226,7 +226,7 @@ def compensation_limit(
     >>> print(limit)
     damping compensation: m = 0.05 kg, b = 0.1 N s/m, k = 0 N/m, T = 0.001 s
       viscous    up to 1 of 0.1 N s/m, drifting off: exact linear stability of this plant
-      dry        up to 1 of 0.02 N at viscous = 0; beyond, it keeps moving, once kicked
+      dry        up to 1 of 0.02 N at viscous = 0; above that, it keeps moving after a push
     >>> round(limit.speed(viscous=0.5, dry=1.5), 6)
     0.2
 
@@ -261,9 +261,9 @@ def _least(b, b_least, coulomb, coulomb_least):
     """Return the least damping and Coulomb friction that the device may have."""
     b_least = b if b_least is None else b_least
     coulomb_least = coulomb if coulomb_least is None else coulomb_least
-    why = "no part of a damping that may be zero is safe to cancel; identify it better"
+    why = "no fraction of a damping that may be zero is safe to cancel. Identify the damping more precisely"
     b_least = number("b_least", b_least, "N s/m", above=0, most=b, why=why)
-    return b_least, max(number("coulomb_least", coulomb_least, "N", most=coulomb, why="the paddle has no more"), 0.0)
+    return b_least, max(number("coulomb_least", coulomb_least, "N", most=coulomb, why="the paddle has no more than this"), 0.0)
 
 
 def _of_a_free_handle(paddle, scene, drifting):

@@ -63,8 +63,8 @@ class Pairs(ShowsItself):
     def __post_init__(self) -> None:
         if self.begins not in BEGINS or self.between not in BETWEEN or self.crossings not in (1, 2):
             raise SceneError(
-                f"begins = {self.begins!r}, between = {self.between!r}, crossings = {self.crossings!r}; needs begins one of "
-                f"{', '.join(BEGINS)}, between one of {', '.join(BETWEEN)}, and 1 or 2 crossings"
+                f"begins = {self.begins!r}, between = {self.between!r}, crossings = {self.crossings!r}; needs begins to be "
+                f"one of {', '.join(BEGINS)}, between one of {', '.join(BETWEEN)}, and crossings 1 or 2"
             )
 
 

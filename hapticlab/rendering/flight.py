@@ -38,11 +38,14 @@ class Flight:
         speed = max(beta + math.sqrt(kappa) for beta, kappa, _ in self.rates.values())
         if speed > FASTEST:
             raise AnalysisError(
-                f"K = {model.K:g} N/m on M = {model.M:g} kg turns round within T = {model.T:g} s; a dead-beat wall sees one "
-                f"crossing a period: needs T <= {model.T * FASTEST / speed:.2g} s, or a softer or less damped wall"
+                f"with K = {model.K:g} N/m and M = {model.M:g} kg the handle reverses within T = {model.T:g} s; a dead-beat "
+                f"wall allows one crossing per period. Use T <= {model.T * FASTEST / speed:.2g} s, or a softer or less "
+                "damped wall"
             )
         if not 1e-15 <= accuracy <= 0.1:
-            raise AnalysisError(f"accuracy = {accuracy!r}; needs a number from 1e-15 to 0.1, of what moves in a period")
+            raise AnalysisError(
+                f"accuracy = {accuracy!r}; needs a number from 1e-15 to 0.1, a fraction of the motion in one period"
+            )
         self.degree = 2
         while speed**self.degree / math.factorial(self.degree) > accuracy:
             self.degree += 1

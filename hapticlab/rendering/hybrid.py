@@ -176,7 +176,7 @@ class _Path:
                 self.state = (0.0, w, not self.state[2])
                 self.crossings.append((self.now, w))
             if len(self.crossings) > most:
-                raise AnalysisError("the boundary is crossed without end within a period: the handle rests on it")
+                raise AnalysisError("the handle rests on the boundary, which it crosses endlessly within one period")
 
     def _series(self):
         """Return the motion from the state on as a function of time, by its power series."""

@@ -63,15 +63,15 @@ class WallModel(ShowsItself):
         """Return the model of a paddle in a hand; without one, of the hand the paddle has."""
         m, b, T, delay, held_by = known(paddle, "m", "b", "T", "delay", "hand")
         if hand is not None and not isinstance(hand, Hand):
-            raise AnalysisError(f'hand = {hand!r}; needs a Hand, as hl.Hand("pinch") or hl.Hand(m=0.02, b=1, k=200)')
+            raise AnalysisError(f'hand = {hand!r}; needs a Hand, such as hl.Hand("pinch") or hl.Hand(m=0.02, b=1, k=200)')
         hand = held_by if hand is None else hand
         of_hand = dict.fromkeys(("m", "b", "k", "push"), 0.0)
         if hand is not None:
             of_hand = {name: getattr(hand, name) for name in of_hand}
             if hand.moves:
                 raise AnalysisError(
-                    "the hand's intent moves; a law predicts with a hand at one place: give hand=hl.Hand(..., intent=place), "
-                    "and bind push to its force"
+                    "the intent of the hand moves, but a law predicts with a hand whose target position is fixed. Give "
+                    "hand=hl.Hand(..., intent=position), and bind push to its force"
                 )
         intent = getattr(hand, "intent", None) or 0.0
         return cls(

@@ -64,16 +64,16 @@ class OverCompensation(ShowsItself):
     duration: float
 
     def __str__(self) -> str:
-        moves = "hunts about the hand's spring" if self.ideal.k else "keeps moving, once kicked,"
+        moves = "hunts about the hand's spring" if self.ideal.k else "keeps moving after a push,"
         return (
-            f"{moves} from dry = {self.limit:.5g} on at viscous = {self.viscous:g}, in simulations of {self.duration:.3g} s; "
-            f"{self.ideal.hunts_from(self.viscous):.5g} for a short period and a narrow sign"
+            f"{moves} above dry = {self.limit:.5g} at viscous = {self.viscous:g}, in simulations of {self.duration:.3g} s; "
+            f"the limit for a short period and a narrow sign is {self.ideal.hunts_from(self.viscous):.5g}"
         )
 
     def plot(self) -> Figure:
         """Draw the motion that stays over the part that is compensated, simulated and by its closed form; a figure."""
         spring = self.ideal.k > 0
-        scale, name = (1e3, "amplitude that stays [mm]") if spring else (1.0, "speed that stays [m/s]")
+        scale, name = (1e3, "remaining amplitude [mm]") if spring else (1.0, "remaining speed [m/s]")
         jump = self.ideal.hunts_from(self.viscous) * np.array([1, 1 + 1e-9])
         fine = np.sort(np.r_[np.linspace(self.dry[0], self.dry[-1], 200), jump])
         closed = _expected(self.ideal, self.viscous, fine)
@@ -83,7 +83,7 @@ class OverCompensation(ShowsItself):
             axes.plot(fine, scale * closed, color="black", linestyle="--", label="closed form")
             axes.plot(self.dry, scale * self.motion, color=WARM, linestyle="", marker="o", ms=4, label="simulated")
             axes.axvline(self.limit, color="0.5", linestyle=":", label="simulated limit")
-            axes.set_xlabel(f"part of the Coulomb friction compensated, of {self.ideal.coulomb:g} N")
+            axes.set_xlabel(f"fraction of the Coulomb friction compensated, of {self.ideal.coulomb:g} N")
             axes.set_ylabel(name)
             axes.legend(loc="upper left")
         return figure
@@ -137,13 +137,19 @@ def over_compensation(
     1.04
     """
     if not isinstance(paddle, SimulatedPaddle):
-        raise AnalysisError(f"paddle is a {type(paddle).__name__}; what runs away is simulated: hl.SimulatedPaddle(...)")
+        raise AnalysisError(
+            f"paddle is a {type(paddle).__name__}; over-compensation runs in simulation only. Use hl.SimulatedPaddle(...)"
+        )
     ideal = compensation_limit(paddle, velocity=velocity if velocity and velocity.is_linear else None)
-    number("coulomb", paddle.coulomb, "N", above=0, why="without dry friction there is none to compensate")
+    number("coulomb", paddle.coulomb, "N", above=0, why="without dry friction there is nothing to compensate")
     if paddle.hand is not None and paddle.hand.moves:
-        raise AnalysisError("the hand's intent moves: what keeps moving would be the hand; give intent=None, or a place in m")
+        raise AnalysisError(
+            "the intent of the hand moves, so the hand itself would keep moving. Give intent=None, or a position in m"
+        )
     if not 0 <= viscous < ideal.viscous:
-        raise AnalysisError(f"viscous = {viscous:g} runs away by itself; needs 0 <= viscous < {ideal.viscous:.4g}")
+        raise AnalysisError(
+            f"viscous = {viscous:g} makes the handle run away by itself; needs 0 <= viscous < {ideal.viscous:.4g}"
+        )
     width = in_si(speed, "m/s", "speed")
     scene = damping_compensation(b=paddle.b, coulomb=paddle.coulomb, speed=width, sign=sign, velocity=velocity)
     first = ideal.hunts_from(viscous)
@@ -160,10 +166,10 @@ def _first_moving(runs, dry, motion):
     for _ in range(ROUNDS):
         moving = np.flatnonzero(motion > 0)
         if not len(moving):
-            raise AnalysisError(f"nothing keeps moving up to dry = {dry[-1]:.4g}; give up_to a larger part")
+            raise AnalysisError(f"the handle comes to rest at all values up to dry = {dry[-1]:.4g}; give a larger up_to")
         if moving[0] == 0:
             raise AnalysisError(
-                f"it keeps moving at dry = {dry[0]:.4g} already; compensate less of the viscous damping, or wait longer"
+                f"the handle keeps moving even at dry = {dry[0]:.4g}; compensate less of the viscous damping, or wait longer"
             )
         below, above = dry[moving[0] - 1], dry[moving[0]]
         dry = np.linspace(below, above, LANES)

@@ -161,11 +161,13 @@ def velocity_errors(
             "the record has no true velocity; run a simulated paddle with an encoder: SimulatedPaddle(counts_per_metre=...)"
         )
     if log.every != 1 or np.any(log.gap):
-        raise AnalysisError("the record has gaps; an estimator needs every sample: record with every=1")
+        raise AnalysisError("the record has gaps; an estimator needs every sample. Record with every=1")
     estimates = [estimates] if isinstance(estimates, VelocityEstimate) else list(estimates)
     wrong = next((e for e in estimates if not isinstance(e, VelocityEstimate)), None)
     if wrong is not None:
-        raise AnalysisError(f"{wrong!r} is no estimate of a velocity; needs those such as hl.velocity.filtered(tau='4 ms')")
+        raise AnalysisError(
+            f"{wrong!r} is not an estimate of a velocity; give estimates such as hl.velocity.filtered(tau='4 ms')"
+        )
     rows = tuple(_row(estimate, log, board) for estimate in (backward_velocity(), *estimates))
     return VelocityErrors(rows, log.t, log.v_true, log.T, board)
 

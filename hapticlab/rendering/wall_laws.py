@@ -112,11 +112,9 @@ def checked_laws(laws):
     for name in names:
         if not isinstance(name, str) or name not in LAWS:
             given = repr(name) if isinstance(name, str) else f"a {type(name).__name__}"
-            raise AnalysisError(
-                f"laws hold {given}; needs names, of {', '.join(LAWS)}; of a scene, hl.stability.wall_map draws a map"
-            )
+            raise AnalysisError(f"laws contain {given}; needs names of {', '.join(LAWS)}. For a scene, use hl.stability.wall_map")
     if not names:
-        raise AnalysisError(f"laws = {laws!r}; needs one name or more, of {', '.join(LAWS)}")
+        raise AnalysisError(f"laws = {laws!r}; needs one or more of {', '.join(LAWS)}")
     return names
 
 

@@ -20,7 +20,7 @@ def main(function, file):
     except Fault as problem:
         state, found = FAULT, str(problem)
     except BaseException:
-        state, found = FAULT, f"the check failed where nobody expected it\n{traceback.format_exc()}"
+        state, found = FAULT, f"the check failed unexpectedly\n{traceback.format_exc()}"
     part = Path(f"{file}.part")
     part.write_text(json.dumps({"state": state, "found": found}), "utf-8")
     os.replace(part, file)

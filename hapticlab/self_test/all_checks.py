@@ -39,7 +39,12 @@ def walk(checks, tell=print, limit=ALL):
 
 
 def _late(check, limit):
-    return Outcome(check.name, check.shows, ATTENTION, f"not run: the checks before it took the {limit:g} s that all may take")
+    return Outcome(
+        check.name,
+        check.shows,
+        ATTENTION,
+        f"not run, because the earlier checks used the {limit:g} s that all checks have together",
+    )
 
 
 def alone(check, seconds):
@@ -82,5 +87,5 @@ def _read(answer, said, ended, seconds):
         told = json.loads(answer.read_text("utf-8"))
         return told["state"], told["found"]
     else:
-        how = f"its process ended with code {ended} before it had an answer"
+        how = f"its process ended with code {ended} before it gave an answer"
     return FAULT, f"{how}; it had printed: {said.read_bytes().decode('utf-8', 'replace')[-SHOWN:].strip() or 'nothing'}"

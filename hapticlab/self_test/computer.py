@@ -48,7 +48,7 @@ def clocks(folder):
         late.append(time.perf_counter() - begun)
     found = f"the clock steps by {min(steps) * 1e6:.2g} us; a sleep of 1 ms takes {median(late) * 1e3:.2f} ms (median)"
     if min(steps) > COARSE:
-        raise Attention(f"{found}; times of the link will be coarse")
+        raise Attention(f"{found}; measured times of the link will be coarse")
     return found
 
 

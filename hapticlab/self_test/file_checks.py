@@ -45,7 +45,7 @@ def paths(folder):
     wrong = run_in(longer)
     long = f"a path of {len(str(longer))} characters"
     if wrong and sys.platform == "win32":
-        raise Attention(f"spaces and other alphabets work. As Windows is set up here, {long} does not: {wrong}")
+        raise Attention(f"spaces and other alphabets work. With the settings of Windows here, {long} does not: {wrong}")
     need(not wrong, f"in {long}: {wrong}")
     return f"spaces, other alphabets and {long} work"
 
@@ -77,5 +77,5 @@ def labs(folder):
     shutil.copytree(here / found[0].name, folder / "own" / own)
     copy_labs(folder / "own")
     kept = (folder / "own" / own / mine.name).read_bytes() == mine.read_bytes()
-    need(kept, "a lab's folder in capitals lost what was changed in it")
+    need(kept, "a lab folder written in capitals lost the student's changes")
     return f"{len(found)} labs copied; a changed notebook was kept. This file system {case} the case of letters"

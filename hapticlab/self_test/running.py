@@ -131,8 +131,8 @@ def scene(folder):
     # push = K (x - z) + k_h x and K (x - z) = k_w (z - z_o)
     x, z = np.linalg.solve([[500.0, -300.0], [300.0, -2300.0]], [2.0, -10.0])
     off = max(abs(log.x[-1] - x), abs(log.z[-1] - z))
-    need(off < 1e-6, f"the handle and the mass come to rest {off:g} m from where statics says")
+    need(off < 1e-6, f"the handle and the mass come to rest {off:g} m from the static equilibrium")
     figure, samples = folder / "scene.png", report_of(program, log)["samples"]
     plot(log, "x", "z", "F").savefig(figure)
     need(figure.read_bytes().startswith(PNG), "the figure is not a PNG file")
-    return f"{samples} samples; the handle rests {off:.1g} m from where statics says. The figure is a PNG file"
+    return f"{samples} samples; the handle rests {off:.1g} m from the static equilibrium. The figure is a PNG file"

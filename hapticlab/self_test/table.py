@@ -26,12 +26,14 @@ CHECKS = (
     _own("ports", "the serial ports can be listed", "computer.ports"),
     _own("endings", "source files may have the line endings of Windows", "file_checks.line_endings"),
     _own("engines", "every engine gives the bits that it gives on other systems", "running.engines"),
-    _own("scene", "a scene with equations of motion runs, rests where statics says, and is drawn", "running.scene"),
+    _own(
+        "scene", "a scene with equations of motion runs, comes to rest at the static equilibrium, and is drawn", "running.scene"
+    ),
     _own("link", "a simulated board runs with the whole protocol, sim://hapkit", "running.link"),
-    _own("labs", "the labs are copied, and what a student changed stays", "file_checks.labs"),
+    _own("labs", "the labs are copied, and a student's changes are kept", "file_checks.labs"),
     _own("paths", "files are found in long folders, with spaces and other alphabets", "file_checks.paths"),
     _own("consoles", "commands run on consoles that cannot write every character", "computer.consoles", 60.0),
-    _own("sweeps", "processes that start from nothing share a sweep", "running.sweeps"),
+    _own("sweeps", "newly started processes share a sweep", "running.sweeps"),
     _own("jupyter", "a notebook's kernel runs hapticlab, and its server has the extension", "teaching.jupyter", 60.0),
     _own("grading", "a small class is graded at the best level of this system", "teaching.graded_as_it_comes", 60.0),
     _own("no walls", "the same class is graded at level none", "teaching.graded_without_walls", 60.0),

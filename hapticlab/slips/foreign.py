@@ -89,7 +89,7 @@ def _array_in_math(own, match):
     name = function.rpartition(".")[2]
     if not function or name in ("float", "int"):
         return ""
-    return f"`{function}` takes one number, but was given an array. Write np.{name}({', '.join(map(code_of, call.args))})."
+    return f"`{function}` needs one number, but was given an array. Write np.{name}({', '.join(map(code_of, call.args))})."
 
 
 def _power(own, match):
@@ -121,7 +121,7 @@ def _parentheses(own, match):
 
 def _with_text(own, match):
     text = next((one for one in own.walk() if isinstance(one, ast.Constant) and isinstance(one.value, str)), None)
-    shown = code_of(text) if text else "what stands in quotes"
+    shown = code_of(text) if text else "the text in quotes"
     return (
         f"{shown} is a text, not a quantity. Declare a parameter, length = hl.parameters('length', units='m'), "
         f"and give the scene its value: scene(length={shown})."
@@ -133,7 +133,7 @@ def _with_list(own, match):
 
 
 def _with_none(own, match):
-    return "One side is None, which is no number: a function without `return` gives None. End it with return, and the value."
+    return "One side is None, which is not a number: a function without `return` gives None. End it with return, and the value."
 
 
 def _with_function(own, match):
@@ -195,7 +195,7 @@ def _call(own, match):
         return ""
     of, given = code_of(call.func), ", ".join(map(code_of, call.args))
     if of in CLOCK_AND_HANDLE:
-        return f"{of} was given another value in your code, so {of}({given}) is no sample. Write: from hapticlab import {of}."
+        return f"{of} was given another value in your code, so {of}({given}) is not a sample. Write: from hapticlab import {of}."
     if getattr(type(own.value(call.func)), "role", "") == "coordinate":
         return f"{of}({given}): a coordinate is a function of time already, so it is not called. Write {of} alone."
     return f"{of}({given}) calls {of} as if it were a function. Python needs the sign of a multiplication: write {of}*({given})."

@@ -89,7 +89,7 @@ def test_energy_is_drawn_and_what_was_given_is_hatched():
     held = np.maximum(100 * x, 0)[:-1] * np.diff(x)
     np.testing.assert_allclose(axes.lines[0].get_ydata(), 1e3 * np.r_[0, np.cumsum(held)], atol=1e-12)
     (given,) = axes.collections
-    assert given.get_hatch() == "///" and given.get_label() == "given beyond what was taken, 1.2 mJ at most"
+    assert given.get_hatch() == "///" and given.get_label() == "returned beyond the energy taken, at most 1.2 mJ"
 
 
 def test_energy_books_are_drawn_so_that_they_add_up():
@@ -104,7 +104,7 @@ def test_energy_books_are_drawn_so_that_they_add_up():
     top = above.collections[1].get_paths()[0].vertices[:, 1].max()
     supplied = line(above, "supplied").get_ydata()
     assert top == pytest.approx(supplied[-1], abs=1e3 * abs(found.leak).max() + 1e-12)
-    np.testing.assert_array_equal(line(below, "given at the port").get_ydata(), 1e3 * found.sampling)
+    np.testing.assert_array_equal(line(below, "returned at the port").get_ydata(), 1e3 * found.sampling)
 
 
 def test_a_reference_is_drawn_with_the_errors_of_programs():

@@ -128,7 +128,7 @@ def test_what_is_no_record_is_refused_with_the_call_that_makes_one(asker):
 
 def test_a_list_of_names_and_a_scene_for_a_paddle_are_refused_in_words():
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(hl.wall()(k=100), duration=0.05, x=0.001)
-    with pytest.raises(AnalysisError, match="needs names one by one"):
+    with pytest.raises(AnalysisError, match="needs separate names"):
         hl.plot(log, ["x", "F"])
     with pytest.raises(AnalysisError, match="a Scene has no m; needs a paddle"):
         hl.stability_limit(hl.wall())

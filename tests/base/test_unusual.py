@@ -43,5 +43,5 @@ def test_a_run_may_take_the_velocity_of_a_board():
     damper = hl.laws.virtual_damper()(B=0.2)
     exact, estimated = (paddle.run(damper, 0.05, **given).F for given in ({}, {"velocity": "backward_difference"}))
     assert abs(exact[20:] - estimated[20:]).max() > 1e-3
-    with pytest.raises(hl.errors.PaddleError, match="wants a measured v; this paddle has only its backward difference"):
+    with pytest.raises(hl.errors.PaddleError, match="needs a measured v; this paddle has only its backward difference"):
         hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, counts_per_metre=1e4).run(damper, 0.05, velocity="measured")

@@ -20,7 +20,7 @@ WEBER = 0.2
 TRIALS = 60
 TRUE = math.log1p(WEBER)
 PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip"))
-#: name -> a fresh procedure of about 60 trials, and the part of right answers that its own estimate stands for
+#: name -> a fresh procedure of about 60 trials, and the proportion of right answers that its own estimate stands for
 PROCEDURES = {
     "2 down, 1 up (Levitt)": lambda seed: hl.people.UpDown(first=0.5, factor=1.25, reversals=18),
     "1 down, weight 3 (Kaernbach)": lambda seed: hl.people.UpDown(first=0.5, factor=1.15, down=1, weight=3, reversals=26),

@@ -135,101 +135,109 @@ def admittance():
     return table(["b_s/b", "b = 0.5 N s/m: body [g]", "0.2 T late", "b = 2 N s/m: body [g]", "0.2 T late"], rows)
 
 
-TEXT = """# Bounds on the stiffness of a wall: what each promises, and how far apart they lie
+TEXT = """# Bounds on the stiffness of a wall: what each guarantees, and how far apart they are
 
 Written by `tests/benchmarks/passivity_bounds.py`; theory only. T = 1 ms where a number has a unit.
 
-## What each law asks of the device's damping
+## The device damping that each law needs
 
 Passivity in any passive hand, the spring always acting (Colgate and Schenkel 1997; `hl.passivity.margin`):
 
 {laws}
 
-With x(n), v(n) exact at the samples, Eq. (23.3) is passive on no device: the velocity jumps there. `hl.bounds.table` refuses the
-formulas below for it, which are for laws in position; on a paddle with an encoder it is Eq. (23.5), in every row.
+If x(n) and v(n) are exact at the samples, Eq. (23.3) is passive on no device, because the velocity jumps there.
+`hl.bounds.table` rejects the formulas below for Eq. (23.3), because they are for laws in position; on a paddle with an
+encoder Eq. (23.3) becomes Eq. (23.5), in every row.
 
-**No linear law is passive with K > 2 b/T.** Averaged over frequency every stable law of stiffness K at rest asks for
-K T/2, which the plain spring without delay asks for at every frequency; a predictor that asks for less of slow motion asks
-for more near Nyquist. So without delay prediction is of use against one hand and one handle (`hl.stability_limit`), not
-against all. With delay the plain spring asks for most of slow motion, and prediction is of use against all: of the delays
-above, Eq. (23.5) from half a period on, Eq. (23.7) from two.
+**No linear law is passive with K > 2 b/T.** Averaged over frequency, every stable law of stiffness K at rest needs K T/2,
+and the plain spring without delay needs this amount at every frequency. A predictor that needs less for slow motion needs
+more near the Nyquist frequency. So without delay, prediction helps with one hand and one handle (`hl.stability_limit`), but
+not with all hands. With delay, the plain spring needs most for slow motion, and prediction helps with all hands: of the
+delays above, Eq. (23.5) helps from half a period, and Eq. (23.7) from two periods.
 
-**The condition knows nothing of switching.** Through `gate` and one period of delay, the cycle x = 0 (just outside), 0.7865,
-1, 0.1739 makes the law of Eq. (23.7) draw energy up to b = 1.5331 K T, past the 1.5282 of the table; with half a period, a
-cycle of three samples up to 1.3306 K T, past 1.3150. Without delay a search over cycles of up to 12 samples found none beyond
-the table, for any law, `gate` or `clip`; for the plain law that is proven. `hl.passivity.worst_motion` searches such cycles.
+**The condition does not account for switching.** With `gate` and one period of delay, the cycle x = 0 (just outside),
+0.7865, 1, 0.1739 makes the law of Eq. (23.7) draw energy up to b = 1.5331 K T, above the 1.5282 of the table; with half a
+period, a cycle of three samples draws energy up to 1.3306 K T, above 1.3150. Without delay, a search over cycles of up to
+12 samples found no value above the table, for any law, `gate` or `clip`; for the plain law this is proved.
+`hl.passivity.worst_motion` searches such cycles.
 
 ## A damper on a filtered velocity
 
-b = 0.1 N s/m, first-order filter by backward mapping. A positive damper asks at Nyquist, where a filter makes it small:
-b > K T/2 + B/(1 + 2 tau/T). A negative one asks for slow motion, which no filter touches: b > K T/2 + |B|.
+b = 0.1 N s/m, first-order filter by backward mapping. A positive damper needs most at the Nyquist frequency, where a filter
+makes the damper small: b > K T/2 + B/(1 + 2 tau/T). A negative damper needs most for slow motion, which no filter changes:
+b > K T/2 + |B|.
 
 {filtered}
 
 ## The bounds of the field by name
 
-`hl.bounds.table(paddle)`; a dash where an assumption fails, and the object then holds the sentence that says which.
+`hl.bounds.table(paddle)`; a dash shows that an assumption fails, and the object then contains the sentence that says which
+one.
 
 {named}
 
 * **Colgate, Schenkel**: passivity, any passive hand; viscous damping alone.
 * **Abbott, Okamura** (2005): passivity with an encoder, min(2 b/T, 2 f_c/Delta); no delay, no virtual damping, Eq. (23.1).
-* **Diolaiti** (2006): the same with delay, passivity for whole periods; with a fraction (T/2 late above) it is a limit of
-  slow sinusoids and its kind says so. `hl.bounds.diolaiti_plane` says which region of its plane a wall lies in.
-* **Gil** (2004, 2009): stability of this plant to first order in the delay; no passivity claim, and no bound in the strict
-  sense: it errs to both sides.
+* **Diolaiti** (2006): the same with delay, passivity for whole periods. With a fraction of a period (T/2 late above) it is
+  a limit for slow sinusoids, and its kind says so. `hl.bounds.diolaiti_plane` shows in which region of its plane a wall
+  lies.
+* **Gil** (2004, 2009): stability of this plant to first order in the delay. It does not guarantee passivity, and it is not
+  a bound in the strict sense, because it errs in both directions.
 * **exact stability**: eigenvalues of the sampled loop.
 
-Minsky et al. (1990) is not among them: their inequality was not at hand in print, and the forms quoted from it differ.
+Minsky et al. (1990) is not in the list, because their inequality was not available in print, and the forms quoted from it
+differ.
 
 ### Diolaiti between whole periods of delay
 
-Exact for whole periods. Between them a hand may move faster before the force changes than after, and the formula is up to
-(1 + sqrt(4/3))/2 = 1.0774 of what is passive, at a quarter of a period:
+The formula is exact for whole periods. Between them a hand may move faster before the force changes than after, and the
+formula is up to (1 + sqrt(4/3))/2 = 1.0774 times the passive limit, at a quarter of a period:
 
 {between}
 
 ### Gil against the exact limit
 
-135 plants without a hand, B from -0.9 b to 3 b; e = ((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B) with tau = T/2 + delay.
-What the formula leaves out is an amount of stiffness, so a negative damper that leaves little of b makes it large beside K.
-`hl.bounds.gil` refuses past e = 0.1.
+135 plants without a hand, B from -0.9 b to 3 b; e = ((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B) with tau = T/2 +
+delay. The formula neglects an amount of stiffness, so a negative damper that leaves little of b makes this amount large
+compared with K. `hl.bounds.gil` raises an error above e = 0.1.
 
 {gil}
 
 ## Virtual couplers for an impedance display
 
-The stiffest spring beside the best damper that is absolutely stable, every passive hand and every environment that is
-passive at the sample rate (Llewellyn's criterion; `hl.design.coupler`):
+The stiffest spring in parallel with the best damper that is absolutely stable, with every passive hand and every
+environment that is passive at the sample rate (Llewellyn's criterion; `hl.design.coupler`):
 
 {couplers}
 
-Without delay the pairs are k_c T/2 + b_c <= b. With a delay of d + f periods a spring alone is stopped by slow motion, at
-2/((1-f) (d+1)^2 + f (d+2)^2) b/T: an environment stores and returns, which a fixed wall does not. A damper beside it makes
-up for that: at one period the best is 4/sqrt(27) b/T beside b_c = 0.282 b, more than the fixed wall that has no damper.
+Without delay the pairs are k_c T/2 + b_c <= b. With a delay of d + f periods, slow motion limits a spring alone, at
+2/((1-f) (d+1)^2 + f (d+2)^2) b/T, because an environment stores and returns energy, which a fixed wall does not. A damper
+in parallel with the spring compensates for that: at one period the best is 4/sqrt(27) b/T with b_c = 0.282 b, more than the
+fixed wall, which has no damper.
 
-### What the compiled scene asks for
+### The damping that the compiled scene needs
 
-Integrated environments are not passive at the sample rate, so a scene asks for a little more than the device's 0.2 N s/m.
-k_c = 300 N/m, b_c = 0.05 N s/m and one body (`hl.passivity.port`). The exact map under a held sample asks most at the body's
+Integrated environments are not passive at the sample rate, so a scene needs a little more than the device's 0.2 N s/m. k_c
+= 300 N/m, b_c = 0.05 N s/m and one body (`hl.passivity.port`). The exact map under a held sample needs most at the body's
 own resonance (15 Hz for 50 g), where the hold lags and the coupler damps little:
 
 {compiled}
 
 ## Virtual couplers for an admittance display
 
-The dual: not the stiffest spring but the lightest body that can be shown (`hl.design.admittance`; a device of 50 g,
-simulated only, since a paddle has no force sensor). A continuous approximation: frequencies below Nyquist, the servo late by
-half a period of hold, by the delay, and by half a period more for its velocity, a backward difference. The servo alone,
-the environment at rest, is held to Eq. (23.10) exactly: b >= k_s T/2 + b_s without delay. Where
-late, sensor and servo both are.
+The dual problem: find the lightest body that can be shown, instead of the stiffest spring (`hl.design.admittance`; a device
+of 50 g, simulated only, because a paddle has no force sensor). It is a continuous approximation for frequencies below the
+Nyquist frequency, with the servo late by half a period of hold, by the delay, and by half a period more for its velocity,
+which is a backward difference. The servo alone, with the environment at rest, must satisfy Eq. (23.10) exactly: b >= k_s
+T/2 + b_s without delay. In the columns with a delay, both the sensor and the servo are late.
 
 {admittance}
 
-Nothing in the table is lighter than the device itself: the servo lags, and only inertia pays for a lag. A servo firmer than
-the device's own damping is unstable in the hand of some spring before any environment is shown, though many a hand of
-flesh bears it; far beyond, it diverges alone (`hl.stability.damper_limit`). The approximation has been seen to fail on a device
-of 50 g and 10 N s/m, m/b = 5 T: sampled loops of springs and bodies grow there by up to 1 % a sample beside the mass it gives.
+No body in the table is lighter than the device itself, because the servo lags, and only inertia compensates for a lag. A
+servo firmer than the device's own damping is unstable in the hand of some spring even without an environment, although many
+human hands keep it stable; a much firmer servo diverges alone (`hl.stability.damper_limit`). The approximation was found to
+fail on a device of 50 g and 10 N s/m, m/b = 5 T: there, sampled loops of springs and bodies grow by up to 1 % per sample
+with the mass that it gives.
 """
 
 

@@ -52,7 +52,7 @@ def bounces():
             name, f"{round(-1e3 * W[-1], 3) + 0.0:.3f}", f"{abs(1e3 * min(W.min(), 0)):.3f}", f"{abs(log.v[60]) / 0.2:.3f}",
             f"{log.F.max():.2f}", f"{abs(min(log.F[outside].min(), 0)):.2f}",
         ])  # fmt: skip
-    return table(["law", "generated [mJ]", "most ever owed [mJ]", "rebound after 60 ms", "peak [N]", "pull outside [N]"], rows)
+    return table(["law", "generated [mJ]", "most energy drawn [mJ]", "rebound after 60 ms", "peak [N]", "pull outside [N]"], rows)
 
 
 def leaning():
@@ -153,68 +153,68 @@ def costs():
         shortest = next(period for period, one in found.items() if one.fits)
         one = found[shortest]
         rows.append([name, str(one.instructions), str(one.typical), f"{1e3 * shortest:g}", f"{one.share:.0%}"])
-    return table(["scene", "instructions", "cycles", "shortest T that fits [ms]", "of it used"], rows)
+    return table(["scene", "instructions", "cycles", "shortest T that fits [ms]", "used"], rows)
 
 
 TEXT = """# The passivity controller: what it changes, where it fails, what it costs
 
-Written by `tests/benchmarks/passivity_control.py`; simulated, so the same on every computer. A paddle of 50 g and
-0.1 N s/m at 1 kHz, whose plain wall chatters in some hand above 200 N/m, Eq. (23.10). `hl.laws.passivity_controller` is
-Hannaford and Ryu's (2002), with the work of the force that was held; `credit=hl.laws.Credit(stored=hl.laws.wall_energy())`
-makes it act as soon as energy is generated and not only when all that was stored has been given back (Ryu, Preusche,
-Hannaford, Hirzinger 2005).
-alpha_max = 20 N s/m, beta_max = 20 m/(N s).
+Written by `tests/benchmarks/passivity_control.py`; simulated, so it is the same on every computer. A paddle of 50 g and 0.1
+N s/m at 1 kHz, whose plain wall chatters in some hand above 200 N/m, Eq. (23.10). `hl.laws.passivity_controller` is
+Hannaford and Ryu's (2002), with the work of the held force; `credit=hl.laws.Credit(stored=hl.laws.wall_energy())` makes it
+act as soon as energy is generated, and not only after all the stored energy has been returned (Ryu, Preusche, Hannaford,
+Hirzinger 2005). alpha_max = 20 N s/m, beta_max = 20 m/(N s).
 
 ## One bounce
 
-A handle that nobody holds flies at 0.2 m/s, from 2 mm before it, into a wall of 500 N/m.
+A handle that is not held moves at 0.2 m/s, from 2 mm in front of the wall, into a wall of 500 N/m.
 
 {bounces}
 
-The plain series form repays after the handle has left: it drags outside the wall. With `stored` it brakes on the way, with
-`predict` as well it is Eq. (23.5) and owes next to nothing. The parallel form drags nothing; its spring slips, and what
-the last period inside generated stays owed.
+The plain series form dissipates the generated energy after the handle has left, so it pulls outside the wall. With `stored`
+it brakes on the way out; with `predict` as well it is Eq. (23.5), and almost no generated energy remains. The parallel form
+does not pull; its spring slips, and the energy that the last period inside generated remains.
 
 ## Leaning on the wall
 
-A hand of 20 g, without damping or stiffness, leans with 1 N for 4 s; the amplitude is that of the last half second.
+A hand of 20 g, without damping or stiffness, pushes with 1 N for 4 s; the amplitude is that of the last half second.
 
 {leaning}
 
-The series forms end the chatter of all of these walls. Behind an encoder half a count lasts at most; what else is left after
-4 s, where x is exact and at 300 N/m, dies out with the device's own damping. The parallel form makes it worse: it gives
-back no more than it took, so it ends no oscillation, and under a steady push the wall sinks by what it generates, which is
-the push's work and feeds the oscillation. It is for impacts, and for environments that are not leant on.
+The series forms end the chatter of all of these walls. With an encoder an oscillation of at most half a count remains. The
+amplitude that remains after 4 s with exact x, and at 300 N/m, dies out with the device's own damping. The parallel form
+makes the chatter worse: it returns no more energy than it took, so it ends no oscillation, and under a steady push the wall
+sinks by the energy that it generates, which is work of the push and feeds the oscillation. Use the parallel form for
+impacts, and for environments against which nobody pushes steadily.
 
 ## The stiffest wall
 
-The first stiffness that chatters by 0.1 mm, in a hand of 20 g, 0.5 N s/m and 100 N/m that leans with 1 N:
+The lowest stiffness that chatters by 0.1 mm, in a hand of 20 g, 0.5 N s/m and 100 N/m that pushes with 1 N:
 
 {stiffest}
 
-The parallel form stands by giving way: within 3 s its wall has sunk from 2 mm to the 10 mm where the hand leans no more, and
-is felt as nothing.
+The parallel form remains stable because its wall yields: within 3 s the wall has sunk from 2 mm to 10 mm, where the hand no
+longer pushes, and the hand feels no force.
 
 ## How strong a damper
 
 {dampers}
 
-Up to the device's own b a sampled damper is passive in any hand, and too weak here; 1 % of `hl.stability.damper_limit` of
-handle and hand is enough for this wall, a tenth for the stiffest. More changes little where x is exact, for the controller
-asks for no more damping than takes back what is owed. Behind an encoder a count is felt as alpha_max
-count/T: half of the limit makes jumps of several newtons, all of it of tens, and beyond it the controller
-chatters by itself.
+Up to the device's own b a sampled damper is passive in any hand, but it is too weak here. 1 % of
+`hl.stability.damper_limit` of handle and hand is enough for this wall, and a tenth for the stiffest. A larger limit changes
+little with exact x, because the controller uses no more damping than is needed to dissipate the generated energy. With an
+encoder, one count is felt as alpha_max count/T: half of the limit makes force jumps of several newtons, the whole limit of
+tens of newtons, and beyond the limit the controller chatters by itself.
 
 ## A human who is active for long
 
-The hand stirs honey (1 N s/m, 2 Hz, 10 mm) beside a wall of 1000 N/m and then leans on it. "If the human operator is active
-for a long period of time, then the system driving the interface can be active for a long period of time": what stirring
-paid is credit, and the controller waits until the chatter has spent it.
+The hand stirs honey (1 N s/m, 2 Hz, 10 mm) next to a wall of 1000 N/m and then pushes against the wall. "If the human
+operator is active for a long period of time, then the system driving the interface can be active for a long period of
+time": the work of stirring is credit, and the controller waits until the chatter has used the credit.
 
 {stirred}
 
-Forgetting credit, or bounding it, strikes off what was paid and never what is owed, so that the environment stays passive;
-the chatter no longer depends on the past. With `stored` alone the credit of the honey still counts.
+Forgetting or bounding the credit reduces energy that was taken in and never energy that was generated, so the environment
+stays passive, and the chatter no longer depends on the past. With `stored` alone the credit from the honey still counts.
 
 ## What an Uno has time for
 

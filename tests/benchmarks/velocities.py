@@ -113,26 +113,27 @@ Written by `tests/benchmarks/velocities.py`. T = 1 ms, encoder counts of 20 um.
 
 ## What an estimate costs
 
-`hl.velocity.compare` on two seconds of a smooth motion at up to 60 mm/s, where a count in a period is 20 mm/s. The lag is the
-error's part along the acceleration, the noise the rest of it. The cycles are those of a virtual damper with this velocity.
+`hl.velocity.compare` on two seconds of a smooth motion at up to 60 mm/s, where one count per period is 20 mm/s. The lag is
+the component of the error along the acceleration, and the noise is the rest of the error. The cycles are those of a virtual
+damper with this velocity.
 
 {errors}
 
-At the same lag a window is somewhat smoother than a filter, for four to ten times the cycles; the steady Kalman filter is
-smoother than either, for nine instructions. What it assumes of the acceleration sets its lag: one that expects much looks
-ahead, and makes more noise than the difference itself.
+At the same lag, a window is somewhat smoother than a filter but needs four to ten times the cycles. The steady Kalman
+filter is smoother than either and needs nine instructions. The acceleration that a Kalman filter assumes sets its lag: one
+that expects a large acceleration predicts ahead, and makes more noise than the difference itself.
 
-## In a wall: a smooth velocity is a late one
+## In a wall: a smooth velocity is late
 
-Eq. (23.3) with each velocity: 30 g, 0.1 N s/m, a pinching hand. Left the exact linear limit, the spring always acting and the
-velocity undisturbed by counts; right the largest K up to which no wall chatters by more than a count, with the encoder,
-Coulomb friction of 20 mN and a push of 2 N (a second each, K in steps of 6 %).
+Eq. (23.3) with each velocity: 30 g, 0.1 N s/m, a pinching hand. Left column: the exact linear limit, with the spring always
+acting and the velocity undisturbed by counts. Right column: the largest K up to which no wall chatters by more than a
+count, with the encoder, Coulomb friction of 20 mN and a push of 2 N (one second each, K in steps of 6 %).
 
 {walls}
 
-The prediction of Eq. (23.3) is half a sample; a filter of 1 ms is late by one and a half. So filtering the velocity takes away
-what predicting with it gave. Filter a damper that is felt, where noise is felt; leave the prediction its difference, or a
-Kalman filter that expects accelerations as great as those of a contact.
+The prediction of Eq. (23.3) is half a sample; a filter of 1 ms is late by one and a half samples. So a filter on the
+velocity removes the advantage of the prediction. Use the filter for a damper whose noise is felt. For the prediction use
+the difference, or a Kalman filter that expects accelerations as large as those of a contact.
 
 ## Pulses on entry
 
@@ -140,15 +141,16 @@ A handle of 50 g and 0.3 N s/m, thrown at 0.25 m/s from 10 mm before the wall, w
 
 {pulses}
 
-The brake takes what the spring would have had to store, and so what the hold would have given back with interest. It
-needs a speed at one instant: from counts a difference over one period could be wrong by 20 mm/s in 190.
+The brake dissipates the energy that the spring would have stored and that the hold would have returned with a surplus. The
+brake needs the speed at one instant. With an encoder, a difference over one period could be wrong by 20 mm/s at 190 mm/s.
 
 ## Compensated friction
 
 50 g, 0.4 N s/m and 20 mN, `hl.design.compensation`, and `hl.design.over_compensation` at a `speed` of 2 mm/s. A free handle
-drifts off where all its damping is compensated, whatever the delay. About a spring the delay turns the negative damper, so that
-more of it can be fed back before the oscillation grows. Dry friction may be compensated beyond its whole there, for at each turn
-the handle has to break away; the width of the sign's dead zone and a delay ask for more still.
+drifts away if all its damping is compensated, whatever the delay. Against a spring, the delay changes the phase of the
+negative damper, so more of the damping can be fed back before the oscillation grows. There, more than all of the dry
+friction can be compensated, because the handle must break away at each reversal; the width of the sign's dead zone and a
+delay increase this fraction further.
 
 {compensated}
 """

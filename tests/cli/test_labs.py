@@ -119,7 +119,7 @@ def test_a_link_leads_no_writing_elsewhere(place):
     [
         (["labs", "file", "--no-open"], "file is a file; name a folder for the labs"),
         (["labs", "../labs", "--no-open"], "is where the labs come from"),
-        (["labs", "new", "--no-open", "--instructor", "nowhere"], "nowhere holds no NN_name/solution.py; name the folder"),
+        (["labs", "new", "--no-open", "--instructor", "nowhere"], "nowhere contains no NN_name/solution.py; name the folder"),
         (["labs", "../labs/sub", "--no-open"], "is inside the folder where the labs come from"),
     ],
 )
@@ -270,13 +270,13 @@ def test_mistakes_in_answers_are_told(place, capsys):
     (place / "answers" / "08_springs").rename(place / "answers" / "08_spring")
     assert main(command) == 1
     rows, out = table(capsys)
-    assert "solution, force: 1 of 2 cases; -6, expected 6. The sign is turned." in out
+    assert "solution, force: 1 of 2 cases; -6, expected 6. The sign is wrong." in out
     assert rows[0][:4] == ["08_springs", "no", "answers", "in"]
     assert rows[-1] == ["08_spring", "answers,", *"and no lab of that name came with hapticlab".split()]
     (place / "labs" / "08_springs" / "08_springs.ipynb").write_text("no notebook")
     (place / "answers" / "08_spring").rename(place / "answers" / "08_springs")
     assert main(command) == 1
-    assert "08_springs.ipynb is no notebook; it needs the JSON that Jupyter writes" in capsys.readouterr().out
+    assert "08_springs.ipynb is not a notebook; it needs the JSON that Jupyter writes" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("arguments", [["--seed", "3"], ["--seed", "x", "--instructor", "y"]])

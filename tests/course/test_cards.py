@@ -12,7 +12,7 @@ from hapticlab.course.cards.progress import FILE, remember
 from hapticlab.course.check import checked
 from hapticlab.course.exercise import Case, Exercise
 
-SLIP = "The sign is turned: <F_e> is the force on the wall."
+SLIP = "The sign is wrong: <F_e> is the force on the wall."
 CASES = [Case({"x": 0.5 * i}, 1.0 * i, unit="N", slips={-1.0 * i: SLIP}) for i in (1, 2, 3)]
 FORCE = Exercise("force", points=2, asks="F", cases=CASES, hint="Which way?", matters="It is in every lab.")
 
@@ -102,7 +102,7 @@ def test_where_lists_differ_both_are_drawn_with_their_words():
     page = Reader(checked("98.table", TABLE, lambda x: 100 * x).card.html())
     drawn = [attributes for tag, attributes in page.elements if tag == "svg"]
     assert len(drawn) == 1 and drawn[0]["role"] == "img" and drawn[0]["aria-label"].startswith("table: ")
-    assert "The largest difference is at handle position x = 40 mm: 4 came, 8 is expected." in page.text
+    assert "The largest difference is at handle position x = 40 mm: yours is 4, and 8 is expected." in page.text
     assert not {name for _, attributes in page.elements for name in attributes} & {"id", "onload", "href", "src"}
     assert checked("98.table", TABLE, lambda x: 200 * x).card.figures == ()
 

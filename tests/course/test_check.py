@@ -149,32 +149,35 @@ def itself():
 @pytest.mark.parametrize(
     ("answer", "words"),
     [
-        (lambda x, v, k: math.nan, "likely slip: NaN (no number)"),
+        (lambda x, v, k: math.nan, "likely sli...umber,"),
         (lambda x, v, k: math.inf, "inf N, expected"),
-        (lambda position, v, k: 200 * position, "it takes (position, v, k), and is called with x=, v=, k=; keep the names"),
-        (lambda: 2.4, "it takes (), and is called"),
+        (
+            lambda position, v, k: 200 * position,
+            "it takes (position, v, k), but is called with x=, v=, k=; keep the argument names of the notebook",
+        ),
+        (lambda: 2.4, "it takes (), but is called with x=,"),
         (lambda x, v, k, b: 2.4, "it takes (x, v, k, b)"),
         (lambda x, v, k: None, "it returns None; is its `return` missing?"),
         (lambda x, v, k: "2.4 N", "a text, needs one number, without quotes and unit"),
         (lambda x, v, k: True, "True or False, needs one number"),
         (lambda x, v, k: [], "0 numbers, needs one number"),
-        (lambda x, v, k: 100 * k * x, "100 times too large: percent"),
+        (lambda x, v, k: 100 * k * x, "100 times too large: is it in percent"),
         (lambda x, v, k: np.full((2, 3), 2.4), "an array of shape (2, 3), needs one number"),
-        (lambda x, v, k: [[1], [2, 3]], "its rows not equally long"),
+        (lambda x, v, k: [[1], [2, 3]], "its parts are not all numbers,"),
         (lambda x, v, k: np.array(["a"]), "needs an array of real numbers"),
         (lambda x, v, k: 2.4 + 1j, "2.4+1j is a complex number"),
-        (lambda x, v, k: 10**400, "is no number"),
+        (lambda x, v, k: 10**400, "is not a number;"),
         (lambda x, v, k: {"F": 2.4}, "a dict, needs one number"),
-        (lambda x, v, k: iter([2.4]), "a list_iterator is no number"),
-        (lambda x, v, k: (yield 2.4), "a generator is no number"),
-        (lambda x, v, k: sp.Symbol("k") * x, "it still holds k: put numbers in"),
+        (lambda x, v, k: iter([2.4]), "a list_iterator is not a number;"),
+        (lambda x, v, k: (yield 2.4), "a generator is not a number;"),
+        (lambda x, v, k: sp.Symbol("k") * x, "it still contains k: substitute numbers"),
         (lambda x, v, k: np.zeros(2_000_000), "more than 1000000"),
         (lambda x, v, k: itself(), ""),
         (lambda x, v, k: LikesEverything(1.0), "99 N, expected"),
         (lambda x, v, k: np.array(1.0).view(Array), "1 N, expected"),
         (lambda x, v, k: Hostile(), "it raises SystemExit"),
         (lambda x, v, k: 1 / 0, "it raises ZeroDivisionError: division by zero"),
-        (lambda x, v, k: -k * x, "The sign is turned."),
+        (lambda x, v, k: -k * x, "The sign is wrong."),
         (lambda x, v, k: 1e3 * k * x, "1000 times too large"),
         (lambda x, v, k: 1.002 * k * x, "within one percent"),
         (exits, "it raises SystemExit: 0"),
@@ -183,7 +186,7 @@ def itself():
         (floods, "0 N, expected"),
         (changes, "it raises ValueError: two lines !!!"),
         (2.4, "it is a float, needs a function of (x, v, k)"),
-        (Hostile, "it takes (), and is called"),
+        (Hostile, "it takes (), but is called with x=,"),
         (max, "it raises TypeError"),
     ],
 )
@@ -243,10 +246,10 @@ def test_a_check_prints_what_the_code_printed_its_first_lines_and_the_verdict(ca
 
 
 def test_a_mistake_of_an_author_is_told_as_such(capsys, tmp_path, monkeypatch):
-    case = "Case({}, 2.0, slips={'two': 'A word is no number.'})"
+    case = "Case({}, 2.0, slips={'two': 'A word is not a number;.'})"
     monkeypatch.chdir(make(tmp_path, f"LAB = Lab('98', '', 1, [Exercise('k', 'value', 1, cases=[{case}])])"))
     assert not hl.check("98.k", 3.0).passed
-    assert "98.k: the check itself failed, which is no fault of yours: ValueError" in capsys.readouterr().out
+    assert "98.k: the check itself failed, which is not your mistake: ValueError" in capsys.readouterr().out
     (tmp_path / "98_tests" / "checks.py").write_text("LAB =")
     assert not hl.check("98.k", 3.0).passed
     assert "checks.py failed: SyntaxError" in capsys.readouterr().out
@@ -306,11 +309,11 @@ def test_scenes_are_compared_by_what_they_do():
 @pytest.mark.parametrize(
     ("answer", "words"),
     [
-        (lambda: scene(lambda k, x_o: hl.when(x(n) >= x_o, -k * (x(n) - x_o))), "The sign is turned"),
+        (lambda: scene(lambda k, x_o: hl.when(x(n) >= x_o, -k * (x(n) - x_o))), "The sign is wrong."),
         (lambda: scene(lambda k, x_o: k * (x(n) - x_o)), "2 of 3 numbers differ"),
         (lambda: hl.Scene(force=hl.parameters("k", units="N/m") * x(n)), "the scene has no parameter x_o"),
         (lambda: scene(lambda k, x_o: k * sp.sqrt(x(n) - x_o)), "in m^(1/2)*kg*s^-2 but (force, in N) is in N"),
-        (lambda: scene(lambda k, x_o: k * x_o * sp.sqrt(x(n) / x_o - 1)), "NaN (no number)"),
+        (lambda: scene(lambda k, x_o: k * x_o * sp.sqrt(x(n) / x_o - 1)), "NaN (not a number) or infinity comes from 0/0,"),
         (3.0, "needs a Scene"),
         (lambda: 1 / 0, "ZeroDivisionError"),
     ],
@@ -344,10 +347,10 @@ def test_a_scene_with_motion_is_run_as_asked():
 
 def test_what_is_noted_is_never_judged():
     prediction, text = Exercise("p", "prediction", asks="a number"), Exercise("t", "text", least_words=3, asks="why")
-    assert checked("98.p", prediction, 12).text == "98.p: noted; compare it with what you find"
+    assert checked("98.p", prediction, 12).text == "98.p: saved; compare it with your result"
     assert checked("98.p", prediction, "more").passed
     assert not checked("98.p", prediction, Hostile()).passed
-    assert checked("98.t", text, "two words").text == "98.t: 2 words, needs at least 3: why"
+    assert checked("98.t", text, "two words").text == "98.t: 2 words; needs at least 3: why"
     assert checked("98.t", text, "these are three").passed
     assert marks(Lab("98", "", 1, (prediction, text)), {"p": 1}) == ()
 
@@ -359,7 +362,7 @@ def test_a_value_or_a_choice_never_tells_its_answer():
     assert checked("98.k", value, 151.5).passed
     assert all(checked("98.w", choice, same).passed for same in (" Motor ", "(motor)", "motor)", "Motor."))
     for exercise, wrong, words in (
-        (value, 3.0, "3 N/m: not yet"), (value, "B", "needs one number"), (value, -151.5, "The sign is turned."),
+        (value, 3.0, "3 N/m: not yet"), (value, "B", "needs one number"), (value, -151.5, "The sign is wrong."),
         (choice, "hand", "hand: not this one\n  likely slip: Look again."), (choice, "x", "'x', needs one of 'hand', 'motor'"),
         (choice, 2, "a number, needs a text"),
     ):  # fmt: skip

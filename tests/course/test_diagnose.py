@@ -51,19 +51,19 @@ def test_a_number_that_was_given_may_explain_the_factor_as_well(given, factor, w
 @pytest.mark.parametrize("given", [{"T": 2e-3}, {"k": 500.0, "m": 0.05}, {"on": True}, {"x": [1e-3, 1e-3]}, {"m": 1.0}])
 def test_other_numbers_that_were_given_are_not_blamed(given):
     assert "In this case" not in said(0.25, 250.0, **given)
-    assert said(0.25, -0.25, **given) == "The sign is turned."
+    assert said(0.25, -0.25, **given) == "The sign is wrong."
 
 
 @pytest.mark.parametrize(
-    "given, words", [({"g": 9.81}, ""), ({"values": {"g": 9.81}}, "9.8 for 9.81"), ({"K": 100.0}, "a small term")]
+    "given, words", [({"g": 9.81}, ""), ({"values": {"g": 9.81}}, "9.8 instead of 9.81"), ({"K": 100.0}, "a small term")]
 )
 def test_g_is_blamed_only_where_an_exercise_has_it(given, words):
-    assert (words or "9.8 for 9.81") in said(9.0, 9.02, **given)
+    assert (words or "9.8 instead of 9.81") in said(9.0, 9.02, **given)
 
 
 def test_a_condition_left_out_or_turned_is_told_of_a_force_alone():
     wanted, ungated, turned = np.array([0, 0, 0, 2.0, 1.0]), np.array([-3, -1, -0.5, 2, 1]), np.array([-3, -1, -0.5, 0, 0])
-    for got, words in ((ungated, "hl.when(condition, force, 0)"), (turned, "turned round, such as <= for >=")):
+    for got, words in ((ungated, "hl.when(condition, force, 0)"), (turned, "reversed, such as <= instead of >=.")):
         assert words in slip(Exercise("f", "scene"), Case({}, wanted, unit="N"), wanted, got)
         assert slip(Exercise("f"), Case({}, wanted, unit="J"), wanted, got) == ""
 

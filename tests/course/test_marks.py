@@ -105,7 +105,7 @@ def test_the_public_case_of_a_value_does_not_count_beside_hidden_ones(folder):
         ("{'K_OWN': 'x'}", "K_OWN = 'x'; it needs a finite number"),
         ("{'K_OWN': True}", "K_OWN = True"),
         ("1 / 0", "numbers failed: ZeroDivisionError"),
-        ("{'G_OWN': 9.81}", r"has 0 lines G_OWN = number at its top level; it needs one, for 9\.81"),
+        ("{'G_OWN': 9.81}", r"has 0 lines G_OWN = number at its top level; it needs exactly one, for 9\.81"),
     ],
 )
 def test_what_is_wrong_with_own_numbers_is_said(folder, numbers, words):

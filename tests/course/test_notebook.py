@@ -164,7 +164,11 @@ def test_places_are_found_by_name_wherever_the_cells_are(folder):
         ("hidden.py", "def cases(random): return 1 / 0", "hidden.py: cases failed: ZeroDivisionError"),
         ("solution.py", "def force(", "solution.py failed: SyntaxError"),
         ("hidden.py", "def cases(random): return {'nothing': lambda: [{}]}", "has no exercise nothing; it has force, stored"),
-        ("hidden.py", "def cases(random): return {'force': [{}]}", "each exercise needs a function, 'exercise': lambda: "),
+        (
+            "hidden.py",
+            "def cases(random): return {'force': [{}]}",
+            "each exercise needs a function of its own, 'exercise': lambda:",
+        ),
         ("hidden.py", "raise SystemExit(1)", "hidden.py failed: SystemExit"),
         ("solution.py", "def force(k, x): return 1 / 0", "force: the solution gives no value .*: it raises ZeroDivisionError"),
         ("solution.py", "", "force: the solution gives no value for .*: it has no answer"),
@@ -201,13 +205,13 @@ def test_checks_beside_the_notebook_come_before_those_of_the_package(folder):
     [
         (lambda: Exercise("a b"), "needs the name of a Python variable"),
         (lambda: Exercise("a", "essay"), "needs one of function, scene"),
-        (lambda: Exercise("a", "text", points=1), "noted, not judged"),
-        (lambda: Exercise("a", "choice", options={"a": ""}, cases=[Case({}, "b")]), "'b' is none of the options a"),
+        (lambda: Exercise("a", "text", points=1), "saved, not marked"),
+        (lambda: Exercise("a", "choice", options={"a": ""}, cases=[Case({}, "b")]), "'b' is not one of the options a"),
         (lambda: Case(3, 4), "a case needs a dict"),
-        (lambda: Lab("01", "", 1, [Exercise("a"), Exercise("a")]), "a twice"),
+        (lambda: Lab("01", "", 1, [Exercise("a"), Exercise("a")]), "twice;"),
         (lambda: Lab("13a", "", 1, []), "lab number '13a': needs two digits"),
         (lambda: Lab(1, "", 1, []), "lab number 1: needs two digits"),
-        (lambda: read(__file__), "is no notebook"),
+        (lambda: read(__file__), "is not a notebook;"),
     ],
 )
 def test_mistakes_of_an_author_are_told(made, words):

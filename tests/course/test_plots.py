@@ -74,29 +74,29 @@ def test_lines_to_guide_the_eye_and_other_panels_do_no_harm():
         (swing(Y, TIME, "position [m]", "time [s]"), "The axes are swapped: s belongs along x."),
         (swing(1e3 * TIME), "Along x: It is 1000 times too large"),
         (swing(y=1e3 * Y), "Along y: It is 1000 times too large"),
-        (swing(y=1e3 * Y), "Is the unit in its label that of its numbers?"),
-        (swing(y=-Y), "Along y: The sign is turned."),
-        (swing(y=2 * Y), "Along y: It is twice what is expected: is a half missing"),
+        (swing(y=1e3 * Y), "the unit in its label match its numbers?"),
+        (swing(y=-Y), "Along y: The sign is wrong."),
+        (swing(y=2 * Y), "Along y: It is twice as large as expected: is a factor 1/2 missing,"),
         (swing(xlabel="time"), "The x axis has no unit: end its label with one, such as [s]."),
         (swing(ylabel=""), "The y axis has no unit: end its label with one, such as [m]."),
         (swing(ylabel="force F [N]"), "The y axis is in N; it should be a quantity in m"),
         (swing(ylabel="share [-]"), "The y axis is in a number without unit"),
         (swing(ylabel="x [parsnip]"), "the y axis is labelled 'x [parsnip]'"),
-        (swing(TIME[:11], Y[:11]), "curve 1 goes from 0 to 0.1 s, needs from 0 to 0.2 s"),
+        (swing(TIME[:11], Y[:11]), "curve 1 goes from 0 to 0.1 s; needs from 0 to 0.2 s"),
         (swing(y=Y + 0.001), "expected"),
-        (swing(y=np.where(TIME > 0.155, np.nan, Y)), "from 0 to 0.15 s, needs from 0 to 0.2 s (5 of its points are nan or inf)"),
+        (swing(y=np.where(TIME > 0.155, np.nan, Y)), "from 0 to 0.15 s; needs from 0 to 0.2 s (5 of its points are nan or inf)"),
         (swing(TIME[:1], Y[:1]), "curve 1"),
         (swing(y=np.nan * Y), "no curve of finite numbers"),
         (swing(TIME[:-1], Y[:-1]), "curve 1 goes from 0 to 0.19 s"),  # a step is 5 % of the range
         (swing(xlabel="t [parsnip], for long"), "'parsnip' is not defined in the unit registry"),
         (swing(np.linspace(0, 0.2, 3), [0, 1.0, 0]).get_lines(), "it is a silent_list, needs a matplotlib Figure or Axes"),
-        (Figure(), "it holds no curve"),
-        (Figure().subplots(), "it holds no curve"),
+        (Figure(), "it contains no curve;"),
+        (Figure().subplots(), "it contains no curve;"),
         (swing().get_lines()[0], "needs a matplotlib Figure or Axes"),
         ([1.0, 2.0], "it is a list, needs a matplotlib Figure or Axes"),
         (pyplot, "it is a module, needs a matplotlib Figure or Axes"),
         ("figure", "it is a str, needs"),
-        (lambda t: swing(), "it takes (t), and is called with no argument"),
+        (lambda t: swing(), "it takes (t), but is called with no argument;"),
         (lambda: None, "is its `return` missing?"),
         (lambda: 1 / 0, "ZeroDivisionError"),
     ],
@@ -111,7 +111,7 @@ def test_curves_of_very_many_are_refused():
     axes = swing()
     for height in range(16):
         axes.plot(TIME, Y + height)
-    with pytest.raises(NotPlain, match="it holds 17 curves; needs 16 at most"):
+    with pytest.raises(NotPlain, match="it contains 17 curves; needs at most 16"):
         curves(axes)
 
 
@@ -120,7 +120,7 @@ def test_one_of_several_guesses_is_no_answer(guesses):
     axes = swing()
     for guess in guesses:
         axes.plot(TIME, guess)
-    words = f"{len(guesses)} curve{'s' * (len(guesses) > 1)} too many: leave out what is not asked for"
+    words = f"{len(guesses)} curve{'s' * (len(guesses) > 1)} too many. Plot only the curves that are asked for"
     assert words in checked("98.swing", PLOT, axes).text
 
 
@@ -155,7 +155,7 @@ def hyperbola(points):
         (np.linspace(0, 3e-3, 15), "right"),
         (np.arange(0, 3e-3, 5e-5), "right"),
         (np.geomspace(1e-6, 3e-3, 50), "right"),
-        (np.linspace(0, 3e-3, 6), "curve 1 has points up to 0.0006 s apart, needs more of them, 0.0005 s apart at most"),
+        (np.linspace(0, 3e-3, 6), "curve 1 has points up to 0.0006 s apart; needs more points, at most 0.0005 s apart"),
         (np.array([0, 3e-3]), "up to 0.003 s apart"),
         (np.append(np.linspace(0, 1e-3, 40), 3e-3), "up to 0.002 s apart"),
     ],
@@ -205,7 +205,7 @@ def phase(x, y):
     ("drawn", "words"),
     [
         (phase(LOOP["x"], LOOP["y"]), "right: 1 curve (A = 0.01)"),
-        (phase(LOOP["x"], -np.array(LOOP["y"])), "Along y: The sign is turned."),
+        (phase(LOOP["x"], -np.array(LOOP["y"])), "Along y: The sign is wrong."),
         (phase(LOOP["x"][:3], LOOP["y"][:3]), "it has 3 points, needs 4"),
         (phase(np.array(LOOP["x"]) * 1e-3, LOOP["y"]), "Along x: It is 1000 times too small"),
         (phase(LOOP["x"], np.array(LOOP["y"]) + 0.1), "curve 1 is not there"),

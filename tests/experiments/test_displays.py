@@ -92,7 +92,7 @@ def test_a_late_sensor_makes_it_worse():
 def test_what_cannot_be_compared_is_refused():
     with pytest.raises(PaddleError, match="moves by an intent"):
         display_motion(PADDLE, Impedance(k=1.0), duration=0.1)
-    with pytest.raises(PaddleError, match="felt by a hand"):
+    with pytest.raises(PaddleError, match="needs a hand that feels it."):
         growth(replace(PADDLE, hand=None), Impedance(k=1.0))
     with pytest.raises(AnalysisError, match="m_v"):
         compare_displays(PADDLE, [100.0], m_v=0.0)

@@ -84,5 +84,5 @@ def test_rows_go_to_a_file(tmp_path):
 def test_what_cannot_be_done_is_refused():
     with pytest.raises(PaddleError, match="fitts needs a hand that holds the handle"):
         fitts(replace(PADDLE, hand=None))
-    with pytest.raises(AnalysisError, match="needs 2 and 3"):
+    with pytest.raises(AnalysisError, match="least 2 and 3"):
         fitts(PADDLE, distances=(0.01,), widths=(0.02,))

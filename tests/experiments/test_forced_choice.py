@@ -160,7 +160,7 @@ def test_a_person_answers_in_their_own_words():
     assert {t.answer for t in found.trials} == {"first"}
     assert [t.right for t in found.trials] == [t.first > t.second for t in found.trials]
     assert sum("hold the handle" in text for text in said) == 8 and found.observer == "a person"
-    with pytest.raises(AnalysisError, match="fresh one"):
+    with pytest.raises(AnalysisError, match="new one"):
         forced_choice(PADDLE, QUICK, Scripted(), asked)
 
 

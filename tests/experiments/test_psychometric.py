@@ -171,7 +171,7 @@ def test_answers_that_tell_nothing_are_refused_or_noted():
         psychometric([0.1, 0.2], [5, 5], [5, 5])
     with pytest.raises(AnalysisError, match="whole numbers"):
         psychometric([0.1, 0.2], [5, 6], [5, 5])
-    with pytest.raises(AnalysisError, match="one entry a level"):
+    with pytest.raises(AnalysisError, match="one entry per level in each"):
         psychometric([0.1, 0.2], [5])
     with pytest.raises(AnalysisError, match="shape='normal'"):
         psychometric([-0.1, 0.2], [1, 0])

@@ -93,7 +93,7 @@ def test_boards_and_wrong_things_are_refused_in_words():
                 call()
     with pytest.raises(PaddleError, match=r"m = -1 kg; a load needs m >= 0"):
         Load(m=-1)
-    with pytest.raises(PaddleError, match="expects = 0.1; needs what the person believes to move"):
+    with pytest.raises(PaddleError, match="expects = 0.1; needs the load that the person expects,"):
         reach(PADDLE, FREE, end=0.02, control=hl.people.Control(expects=0.1))
     with pytest.raises(PaddleError, match="path = 3; needs a path of time"):
         follow(PADDLE, FREE, 3)

@@ -128,7 +128,7 @@ def test_what_lies_beside_the_submissions_is_told(course, here, tmp_path, capsys
         assert main([course[1][0], str(tmp_path), *course[1][2:]]) == 1
     told = capsys.readouterr()
     assert "dan: 0 of 10 points, lab 42 A small wall, dan.rar; could not be graded: dan.rar cannot be unpacked here" in told.out
-    assert "not graded: eve, eve: no notebook is in it; there is nothing" in told.err
+    assert "not graded: eve, eve: it contains no notebook; there is nothing" in told.err
     assert "left aside, as no submission: cy.pdf, notes.md, roster.csv" in told.err
     assert told.err.endswith("hapticlab: 4 handed in: 1 graded, 3 not graded\n")
 

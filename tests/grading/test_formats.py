@@ -281,7 +281,7 @@ def test_gradescope_reads_every_field():
     lost = json.loads(write("gradescope", [report(earned=(0.0, 0.0), problem="no JSON")]))
     jsonschema.validate(lost, GRADESCOPE)
     assert (lost["score"], lost["output"]) == (0, "Not graded: no JSON")
-    with pytest.raises(CourseError, match="no result for Gradescope.*OSError: disc"):
+    with pytest.raises(CourseError, match="no result was written for Gradescope,.*OSError: disc"):
         write("gradescope", [report(earned=(0.0, 0.0), problem="OSError: disc", grader_failed=True)])
     named = json.loads(write("gradescope", [report(earned=(0.0, 0.0), problem="the grader failed.docx is no notebook")]))
     assert named["score"] == 0, "so a student may call a file"
@@ -335,12 +335,12 @@ def test_a_hidden_case_is_not_told_to_who_may_hand_in_again(name):
         return write(name, [report(exercises=(found,))])
 
     shown = told(Outcome(-8.0777), public=True)
-    assert "8.0777 N" in shown and "The sign is turned." in shown
+    assert "8.0777 N" in shown and "The sign is wrong." in shown
     for answer in (Outcome(-8.0777), Outcome(problem="it raises ValueError: x is 0.0123456, k is 654.321"), Outcome([0.5, 0.25])):
         text = told(answer, public=False)
         assert not [number for number in ("0123456", "654.321", "8.0777") if number in text]
         assert "A case that is not shown is wrong." in text and "Which way?" in text
-    assert "The sign is turned." in told(Outcome(-8.0777), public=False)
+    assert "The sign is wrong." in told(Outcome(-8.0777), public=False)
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -372,7 +372,7 @@ def test_an_unknown_format_is_refused():
 
 #: sentences on a hidden case, and whether they are told: not those by whose numbers a student's code could pass a given on
 SENTENCES = {
-    "The sign is turned.": True,
+    "The sign is wrong.": True,
     "It is 1000 times too large: is it in millimetres?": True,
     "It is 2 times what is expected, at every point.": True,
     "It is 231.4 times what is expected, at every point.": False,

@@ -262,7 +262,7 @@ def test_cases_are_a_students_own_and_keyed_by_all_they_depend_on(assignment, tm
 
 def test_an_assignment_without_answers_is_refused_before_anything_is_graded(assignment, tmp_path):
     lab, answers = write_lab(tmp_path)
-    with pytest.raises(CourseError, match="holds no NN_name/solution.py"):
+    with pytest.raises(CourseError, match="contains no NN_name/solution.py"):
         find_assignment(lab, tmp_path)
     (answers / "hidden.py").write_text("cases = None")
     with pytest.raises(CourseError, match="defines no cases"):

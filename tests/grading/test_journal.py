@@ -53,7 +53,7 @@ def test_one_run_writes_a_journal_at_a_time(tmp_path):
     with Journal(path) as journal:
         journal.write("1", ADA)
         for fresh in (False, True):
-            with pytest.raises(CourseError, match=r"another run writes .*journal\.jsonl"), Journal(path, fresh):
+            with pytest.raises(CourseError, match=r"another run is writing .*journal\.jsonl"), Journal(path, fresh):
                 pass
         journal.write("2", BOB)
     with Journal(path) as journal:
@@ -97,7 +97,7 @@ with Journal({str(path)!r}) as journal:
         journal.write(key, ADA)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
-    assert f"CourseError: cannot write {path}: File too large. The reports before are kept" in done.stderr
+    assert f"CourseError: cannot write {path}: File too large. The earlier reports are kept" in done.stderr
     kept = Journal(path).reports
     assert 1 <= len(kept) < 8 and path.stat().st_size == 1000
     with Journal(path) as journal:

@@ -38,16 +38,16 @@ def grade(course, *words, submissions="class"):
 
 
 MISTYPED = {
-    "answers are a student's": (["--instructor", "class/eve"], "class/eve lies in the submissions"),
-    "answers are the submissions": (["--instructor", "class"], "whose code must not judge"),
-    "the lab is a student's": (["--lab", "class/mal/42_small_wall"], "class/mal/42_small_wall lies in the submissions"),
-    "results replace a submission": (["-o", "class/ada.ipynb"], "or take the place of one. Name a place outside"),
-    "results among the submissions": (["-o", "class/grades.csv"], "where it would be taken for a submission"),
-    "results over answers": (["-o", "instructor/42_small_wall/solution.py"], "would take the place of what is read there"),
-    "results over the roster": (["-o", "class.csv", "--roster", "class.csv"], "would take the place of what is read there"),
-    "results are a folder": (["-o", "labs"], "is a folder; name a file for the results, such as -o"),
-    "pages among the submissions": (["--pages", "class/pages"], "class/pages lies in the submissions"),
-    "pages are a file": (["--pages", "note.txt"], "note.txt is a file; name a folder for the pages"),
+    "answers are a student's": (["--instructor", "class/eve"], "class/eve is in the submissions"),
+    "answers are the submissions": (["--instructor", "class"], "whose code must not grade"),
+    "the lab is a student's": (["--lab", "class/mal/42_small_wall"], "class/mal/42_small_wall is in the submissions"),
+    "results replace a submission": (["-o", "class/ada.ipynb"], "or replace one. Give a path outside"),
+    "results among the submissions": (["-o", "class/grades.csv"], "where it would be treated as a submission"),
+    "results over answers": (["-o", "instructor/42_small_wall/solution.py"], "would overwrite a file that is read"),
+    "results over the roster": (["-o", "class.csv", "--roster", "class.csv"], "would overwrite a file that is read"),
+    "results are a folder": (["-o", "labs"], "is a folder; give a file for the results, such as -o"),
+    "pages among the submissions": (["--pages", "class/pages"], "class/pages is in the submissions"),
+    "pages are a file": (["--pages", "note.txt"], "note.txt is a file; give a folder for the pages"),
     "pages over a page of somebody's": (["--pages", "site"], "class.html is not a page of hapticlab's and would be overwritten"),
     "the gradebook is a table": (["--gradebook", "grades.csv"], "grades.csv is not a database"),
     "no worker": (["--workers", "0"], "0"),
@@ -80,7 +80,7 @@ def test_what_is_not_handed_in_is_no_submission(course, kind, capsys):
     with contextlib.chdir(course), pytest.raises(SystemExit) as ended:
         main(grade(course, submissions=TAKEN[kind]))
     told = capsys.readouterr().err
-    assert ended.value.code == 2 and "the folder of the submissions" in told
+    assert ended.value.code == 2 and "only the submissions" in told
 
 
 def test_a_course_in_nbgraders_tree_may_hold_marks_and_pages_beside_it(course, tmp_path, here, capsys):
@@ -142,7 +142,7 @@ def test_files_in_the_working_folder_are_not_imported(course, hostile):
 def test_a_module_is_not_started_from_the_working_folder(course, hostile):
     done = run(command(course, sys.executable, "-m", "hapticlab"), hostile)
     assert not (hostile / "ran").exists(), (hostile / "ran").read_text()
-    assert done.returncode == 2 and "which lies in the submissions" in done.stderr
+    assert done.returncode == 2 and "which is in the submissions" in done.stderr
     assert "start with: python -P -m hapticlab grade" in done.stderr
 
 
@@ -152,4 +152,4 @@ def test_an_import_path_among_the_submissions_is_refused(course, tmp_path, folde
     fill(tmp_path / "class", {"ada/x.ipynb": notebook(HONEST.values())})
     path = os.pathsep.join([str(ROOT), str(tmp_path / folder)])
     done = run(command(course, sys.executable, "-P", "-m", "hapticlab"), tmp_path / "class", PYTHONPATH=path)
-    assert done.returncode == 2 and f"imports modules from {tmp_path / folder}, which lies in the submissions" in done.stderr
+    assert done.returncode == 2 and f"imports modules from {tmp_path / folder}, which is in the submissions" in done.stderr

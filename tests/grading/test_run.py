@@ -53,7 +53,9 @@ def one(course, here):
 def test_each_earns_what_is_right(one):
     assert {report.student: report.earned for report in one.reports} == EARNED
     assert [report.student for report in one.reports] == sorted(EARNED)
-    assert [report.student for report in one.failed] == ["bad"] and one.failed[0].problem.startswith("bad.ipynb is no notebook")
+    assert [report.student for report in one.failed] == ["bad"] and one.failed[0].problem.startswith(
+        "bad.ipynb is not a notebook"
+    )
     assert len(one.seconds) == len(CLASS) and one.processor > 0
 
 

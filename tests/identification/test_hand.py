@@ -31,7 +31,7 @@ def test_a_hand_is_told_from_a_paddle_that_pushes_it():
     assert found["k"].half_width < 0.05 * 500 and found.explained and found.converged
     hand = found.hand(push=1.0)
     assert (hand.m, hand.push) == (found["m"].value, 1.0)
-    assert "hand identified" in str(found) and "swings at 11" in str(found)
+    assert "hand identified" in str(found) and "oscillates at 11" in str(found)
 
 
 def test_friction_of_the_device_is_no_part_of_the_hand():
@@ -75,7 +75,7 @@ def test_refusals_say_what_to_do():
     log = PADDLE.run(hl.laws.virtual_damper()(B=0), duration=0.2)
     with pytest.raises(AnalysisError, match="no push in 200 samples.*hl.identify.pushes"):
         hl.identify.hand(log, PADDLE)
-    with pytest.raises(AnalysisError, match="whose handle.*hl.identify.paddle"):
+    with pytest.raises(AnalysisError, match="the paddle is not known..*hl.identify.paddle"):
         hl.identify.hand(log)
 
 
@@ -99,7 +99,10 @@ def test_a_handle_that_nobody_holds_is_not_pushed_with_all_force(coulomb):
     board, logs = board_of(free)
     with (
         board,
-        pytest.raises(hl.errors.PaddleError, match="hl.identify.hand: pushed by .* did not come back: somebody has to hold"),
+        pytest.raises(
+            hl.errors.PaddleError,
+            match="hl.identify.hand: pushed by .* did not come back. A person must hold the handle in place;",
+        ),
     ):
         hl.identify.hand(board)
     assert max(abs(log.F).max() for log in logs) <= 0.5
@@ -120,7 +123,7 @@ def test_a_push_counts_from_where_the_handle_is_and_ends_for_good():
 def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatch):
     board, _ = board_of(replace(PADDLE, counts_per_metre=1 / 12.8e-6))
     with board:
-        with pytest.raises(hl.errors.PaddleError, match="hl.identify.hand: force = 99 N; the motor stands for"):
+        with pytest.raises(hl.errors.PaddleError, match="hl.identify.hand: force = 99 N; the motor can give 20 N continuously."):
             hl.identify.hand(board, force=99.0)
         patch = "hapticlab.device.board.serial_paddle.SerialPaddle._collect"
         monkeypatch.setattr(patch, lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))

@@ -50,7 +50,7 @@ def test_a_paddle_that_does_not_move_is_told():
 
 
 def test_known_mass_and_records_belong_together():
-    with pytest.raises(AnalysisError, match="give added="):
+    with pytest.raises(AnalysisError, match="Give added="):
         hl.identify.paddle(hl.SimulatedPaddle(**BODY), beside=(1,))
 
 

@@ -56,4 +56,4 @@ def test_a_scene_that_watches_nothing_is_told_so_before_it_is_handed_in(number, 
     right = instructor_names(ROOT / "tests" / "instructor" / FOLDERS[number].name / SOLUTION)[name]
     unwatched = type(right)(force=right.force, eom=right.eom, values=right.values)
     found = checked(f"{number}.{name}", find_lab(number).exercise(name), unwatched)
-    assert not found.passed and f"the scene does not watch {missing}; add watch=[...]" in found.text
+    assert not found.passed and f"the scene does not watch {missing}; it watches" in found.text

@@ -36,7 +36,9 @@ def test_abbott_and_okamura_is_where_no_alternation_across_counts_draws_energy(c
 def test_a_bound_without_an_encoder_is_the_holds():
     assert abbott_okamura_limit(hl.Device(b=b, T=T)).K == 200 == hl.passivity_limit(hl.Device(b=b, T=T)).K
     assert abbott_okamura_limit(hl.Device(b=b, T=T, counts_per_metre=1 / 1e-4)).K == 0  # no friction: an encoder alone buzzes
-    assert "pays for the encoder" in abbott_okamura_limit(hl.Device(b=b, T=T, coulomb=0.001, counts_per_metre=1 / 1e-4)).reason
+    assert (
+        "that the encoder generates" in abbott_okamura_limit(hl.Device(b=b, T=T, coulomb=0.001, counts_per_metre=1 / 1e-4)).reason
+    )
 
 
 @pytest.mark.parametrize("periods", [0, 1, 3])
@@ -89,7 +91,7 @@ def test_gil_refuses_where_it_would_promise_too_much():
 
 @pytest.mark.parametrize("law", ["half_sample", "backward_difference", "ellis"])
 def test_a_law_that_is_none_of_theirs(law):
-    words = "no position law" if law == "half_sample" else "looks ahead by its memory"
+    words = "not a position law" if law == "half_sample" else "predicts from past samples"
     for ask in (
         lambda: abbott_okamura_limit(hl.Device(b=b, T=T), law=law), lambda: diolaiti_limit(hl.Device(b=b, T=T), law=law),
         lambda: gil_limit(paddle(), law=law),
@@ -118,9 +120,9 @@ def test_all_of_them_on_one_paddle():
     assert found["Diolaiti"].K == 100 == found["Gil"].K
     assert found["exact stability"].kind.startswith("exact linear stability") and found["Colgate, Schenkel"].K < 100
     kinds = [limit.kind.split()[0].strip(":") for limit in found.found.values() if isinstance(limit, Limit)]
-    assert kinds == ["passivity", "of", "stability", "exact"]  # Diolaiti: half a period late
+    assert kinds == ["passivity", "for", "stability", "exact"]  # Diolaiti: half a period late
     assert "does not apply: delay = 0.0005 s" in str(found)
-    assert "no passivity" in found["Diolaiti"].kind and "8 %" in found["Diolaiti"].assumptions[-1]
+    assert "not passivity" in found["Diolaiti"].kind and "8 %" in found["Diolaiti"].assumptions[-1]
     assert diolaiti_limit(hl.Device(b=b, T=T, delay=T)).kind.startswith("passivity")
     half = bounds(paddle(), law="half_sample")
     assert half["Colgate, Schenkel"].K == 0 and half["exact stability"].K > 0

@@ -89,7 +89,9 @@ def test_a_constant_negative_stiffness_beside_K(delay):
     for given, name in ((law, "law"), (hl.Scene(force=(k - c) * hl.x(hl.n), name="detent"), "detent")):
         limit = hl.passivity_limit(hl.Device(b=0.1, T=T, delay=delay * T), law=given)
         assert limit.K == pytest.approx(500 + alone, rel=1e-9)
-        assert limit.reason.endswith(f"{name}, passive only from K = 500 N/m on: below it its stiffness at rest is negative")
+        assert limit.reason.endswith(
+            f"{name}, passive only above K = 500 N/m, because below it the stiffness at rest is negative"
+        )
     found = [passivity_margin(hl.Device(b=0.1, delay=delay * T), law(K)).passive for K in (500.0, 499.9 + alone, 500.1 + alone)]
     assert found == [True, True, False]
     with pytest.raises(AnalysisError, match="negative stiffness, -1 N/m"):
@@ -99,7 +101,7 @@ def test_a_constant_negative_stiffness_beside_K(delay):
 
 def test_a_filter_of_the_velocity_is_for_named_laws():
     wall = hl.wall(unilateral=None)(B=0.05)
-    with pytest.raises(AnalysisError, match="velocity_filter = 0.004 s beside a law of its own"):
+    with pytest.raises(AnalysisError, match="velocity_filter = 0.004 s with a law of your own;"):
         hl.passivity_limit(hl.Device(b=0.1, T=T), law=wall, velocity_filter=4e-3)
     for wrong in (-4e-3, float("nan"), "x"):
         with pytest.raises(AnalysisError, match=f"velocity_filter = {wrong!r}.*needs a time constant >= 0"):
@@ -147,7 +149,7 @@ def test_a_scene_of_ones_own():
     assert hl.passivity_limit(hl.Device(b=0.1, T=T), law=lambda K: LinearLaw.of("zoh", K=K, T=T)).K == pytest.approx(
         200, rel=1e-9
     )
-    assert "nothing pays for the hold" in hl.passivity_limit(hl.Device(b=0.0, T=T), law=wall).reason
+    assert "nothing dissipates the energy that the hold generates" in hl.passivity_limit(hl.Device(b=0.0, T=T), law=wall).reason
     unstable = lambda K: LinearLaw(np.diag([1.1]), np.ones(1), np.array([K]), K, T, "runs off")  # noqa: E731
     with pytest.raises(AnalysisError, match="unstable with the handle held"):
         hl.passivity_limit(hl.Device(b=0.1, T=T), law=unstable)
@@ -194,7 +196,7 @@ def test_refusals_and_words():
         passivity_margin(hl.Device(b=1.0, delay=1.0), LinearLaw.of("zoh", K=50, T=T))
     short = passivity_margin(hl.Device(b=0.06), LinearLaw.of("zoh", K=100, T=T, B=0.02))
     assert str(short) == (
-        "zoh, K = 100 N/m, B = 0.02 N s/m: not passive. It asks for b = 0.07 N s/m, at 500 Hz; "
+        "zoh, K = 100 N/m, B = 0.02 N s/m: not passive. It needs b = 0.07 N s/m, at 500 Hz; "
         "the device has 0.06 N s/m, 0.01 too little"
     )
     assert "passive in every passive hand" in str(passivity_margin(hl.Device(b=0.06), LinearLaw.of("zoh", K=100, T=T)))

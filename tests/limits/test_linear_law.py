@@ -49,14 +49,14 @@ def test_two_laws_side_by_side():
     assert both.taps() == pytest.approx([3, 4, -3, 1]) and not np.isnan(both.stiffness)
     assert str(LinearLaw.of("zoh", K=5, B=-0.001, T=T)).endswith("F[n] = 4 x[n] + 1 x[n-1], T = 1 ms")
     assert LinearLaw(np.eye(1), np.ones(1), np.ones(1), 0.0, T, "sum").at(0.0) == np.inf
-    with pytest.raises(AnalysisError, match="one sampling period"):
+    with pytest.raises(AnalysisError, match="sampling period"):
         LinearLaw.of("zoh", K=1, T=T) + LinearLaw.of("zoh", K=1, T=2 * T)
 
 
 def test_refusals():
-    with pytest.raises(AnalysisError, match="no position law"):
+    with pytest.raises(AnalysisError, match="not a position law"):
         LinearLaw.of("half_sample", K=100, T=T)
-    with pytest.raises(AnalysisError, match="memory does not end"):
+    with pytest.raises(AnalysisError, match="impulse response does not end"):
         LinearLaw.of("zoh", K=100, T=T, B=1.0, velocity_filter=1e-3).taps()
     with pytest.raises(AnalysisError, match="not linear"):
         LinearLaw.of_scene(hl.wall()(k=100, x_o=0), T=T)

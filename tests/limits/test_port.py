@@ -69,7 +69,7 @@ def test_static_stiffness_is_that_of_springs_in_series():
     assert static_stiffness(*tick_map(hl.compile(coupler(), T=T, live=(), dtype="float64"))) == 0.0
     with pytest.raises(AnalysisError, match="negative stiffness, -125 N/m"):
         port_damping(hl.Device(T=1e-3), scene)
-    with pytest.raises(AnalysisError, match="negative stiffness, -200 N/m: a free handle falls"):
+    with pytest.raises(AnalysisError, match="negative stiffness, -200 N/m: a free handle moves away,"):
         port_damping(hl.Device(T=1e-3), hl.Scene(force=k * x(n))(k=-200))
 
 
@@ -81,5 +81,5 @@ def test_refusals():
     with pytest.raises(AnalysisError, match="unstable with the handle held"):
         port_damping(hl.Device(T=1e-3), coupler(K=5e5), method="semi_implicit_euler")
     f = hl.parameters("f", units="Hz", values=3)
-    with pytest.raises(AnalysisError, match="time does not drive"):
+    with pytest.raises(AnalysisError, match="depends on x alone and not on time"):
         port_damping(hl.Device(T=1e-3), hl.Scene(force=K * x(n) * sp.sin(2 * sp.pi * f * t)))

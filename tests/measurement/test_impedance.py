@@ -175,7 +175,7 @@ def test_a_motion_that_has_not_settled_is_told():
         )
         for settle in (2.0, 20.0)
     )
-    assert "not settled: Averaging(settle=" in str(early) and "not settled" not in str(late)
+    assert "had not settled: give a longer Averaging(settle=" in str(early) and "not settled" not in str(late)
     assert late.mechanics[0] == pytest.approx((0.05 * 2j * np.pi * 5 + 0.1), rel=1e-2)
 
 
@@ -283,7 +283,10 @@ def test_a_wall_that_chatters_on_a_board_is_cut_and_told():
         assert board.state()["state"] == 0 and board.state()["force"] == 0
     assert max(abs(log.F).max() for log in logs) <= 1.2 + 1e-6
     pulled, logs = with_motor(2.0, hand=hl.Hand(push=0.9))  # 45 mm of the 20 N/m that lead it
-    with pulled, pytest.raises(hl.errors.PaddleError, match="hl.measure.impedance: the handle was led to 2 mm and is at"):
+    with (
+        pulled,
+        pytest.raises(hl.errors.PaddleError, match="hl.measure.impedance: the handle was moved towards 2 mm but is at 381 mm."),
+    ):
         measured_impedance(pulled, hl.wall()(k=100), place=0.002, **SHORT)
     assert abs(logs[-1].F).max() == pytest.approx(0.2 + 2 * 0.1)
     limits = hl.measure.Safety(speed_max=0.06, force_max=5.0)
@@ -297,7 +300,9 @@ def test_a_wall_that_chatters_on_a_board_is_cut_and_told():
 def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_off(monkeypatch):
     board, logs = with_motor(2.0)
     with board:
-        with pytest.raises(hl.errors.PaddleError, match="2.5 N to hold the place and 0.1 N .* more than the 2 N"):
+        with pytest.raises(
+            hl.errors.PaddleError, match="2.5 N to hold the position and 0.1 N to shake the handle are.* more than the 2 N"
+        ):
             measured_impedance(board, hl.wall()(k=500), place=0.005, **SHORT)
         assert not logs  # before anything moves
         patch = "hapticlab.device.board.serial_paddle.SerialPaddle._collect"

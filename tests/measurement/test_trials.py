@@ -72,14 +72,14 @@ def test_noise_of_a_resting_handle_stands_on_a_board_too():
 
 def test_the_guard_ends_a_trial_at_once():
     cut = trial(5000.0, energy_max=1e-3)
-    assert cut.rests is False and "the guard cut the motor after" in cut.verdict and cut.duration == 1.0
+    assert cut.rests is False and "the guard switched off the motor after" in cut.verdict and cut.duration == 1.0
     assert 1e-3 < cut.drawn < 2e-3
 
 
 def test_a_buzz_of_an_encoder_is_the_ripple_of_the_force():
     """Between two counts of 0.5 mm the wall's force jumps by 0.5 N; a square wave has a sinusoid of 0.35 N of its power."""
     coarse = trial(1000.0, paddle(b=1.0, counts_per_metre=1 / 0.5e-3, coulomb=0.02), longest=1.0, speed_max=2.0)
-    assert coarse.rests and coarse.quiet is False and coarse.verdict == "it dithers by encoder counts"
+    assert coarse.rests and coarse.quiet is False and coarse.verdict == "it buzzes by encoder counts"
     assert coarse.outcome == "buzzes" and 0.2 < coarse.buzz < 0.5
     fine = trial(300.0, paddle(b=1.0, counts_per_metre=1 / 10e-6), longest=1.0)
     assert fine.quiet and fine.buzz < 3e-3
@@ -114,13 +114,13 @@ def test_a_handle_that_a_hand_holds_in_the_wall_shows_nothing():
     with hl.connect("sim://hapkit", paddle=paddle(hand=hl.Hand(k=300.0, b=2.0, push=5.0))) as board:
         made = board.program(scene(1000.0, energy_max=0.05, speed_max=3.0))
         found = try_wall(board, made, start(board), K=1000.0, place=0.0, duration=1.0, longest=1.0)
-    assert found.rests is None and found.quiet is None and "hold the handle loosely" in found.verdict
+    assert found.rests is None and found.quiet is None and "Hold the handle loosely" in found.verdict
 
 
 def test_a_handle_that_cannot_be_led_back_is_told():
     pushed = paddle(hand=hl.Hand(push=20.0))
     with hl.connect("sim://hapkit", paddle=pushed) as board:
-        with pytest.raises(hl.errors.PaddleError, match="could not be led back to 0 mm with 20 N/m"):
+        with pytest.raises(hl.errors.PaddleError, match="could not be moved back to 0 mm with 20 N/m:"):
             lead_back(board, 0.0)
         assert board.state()["force"] == 0
 

@@ -160,7 +160,7 @@ def test_a_damping_believed_too_high_leaves_less_to_cancel(hand, delay):
     assert limit.viscous == pytest.approx(expected / 1.05, rel=1e-9)
     alone = compensation_limit(paddle(b=1.05 * DAMPING, delay=delay), b_least=DAMPING)
     assert alone.viscous == pytest.approx(1 / 1.05, rel=1e-15)
-    assert "for every device of b from 0.1 N s/m" in str(alone)
+    assert "for every device with b from 0.1 N s/m," in str(alone)
 
 
 @quick
@@ -212,10 +212,14 @@ def test_it_says_what_it_is():
         (
             lambda: over_compensation("hapkit", speed=0.01),
             AnalysisError,
-            "paddle is a str; what runs away is simulated",
+            "paddle is a str; over-compensation runs in simulation only.",
         ),
         (lambda: compensation_limit(paddle(b=0)), AnalysisError, "b = 0.*nothing to compensate"),
-        (lambda: compensation_limit(paddle(), b_least=-1e-3), AnalysisError, "b_least = -0.001.*identify it better"),
+        (
+            lambda: compensation_limit(paddle(), b_least=-1e-3),
+            AnalysisError,
+            "b_least = -0.001.*Identify the damping more precisely",
+        ),
         (lambda: compensation_limit(paddle(), coulomb_least=1), AnalysisError, "coulomb_least <= 0.02"),
         (
             lambda: compensation_limit(paddle(), velocity=hl.velocity.window(deviation=1e-5)),

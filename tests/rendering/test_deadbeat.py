@@ -129,9 +129,11 @@ def test_the_uno_has_room_for_a_rough_one():
 
 
 def test_what_is_no_pair_is_refused():
-    with pytest.raises(SceneError, match="begins = 'now', between = 'pairs', crossings = 2; needs begins one of"):
+    with pytest.raises(
+        SceneError, match="begins = 'now', between = 'pairs', crossings = 2; needs begins to be one of predictive,"
+    ):
         hl.laws.deadbeat_wall(BALL, K=500, pairs=hl.laws.Pairs(begins="now"))
-    with pytest.raises(AnalysisError, match=r"turns round within T = 0.001 s; .* needs T <= 0.0007"):
+    with pytest.raises(AnalysisError, match=r"the handle reverses within T = 0.001 s; .* Use T <= 0.0007"):
         hl.laws.deadbeat_wall(BALL, K=1e6)
     with pytest.raises(AnalysisError, match="accuracy = 1; needs a number from 1e-15 to 0.1"):
         hl.laws.deadbeat_wall(BALL, K=500, pairs=hl.laws.Pairs(accuracy=1))

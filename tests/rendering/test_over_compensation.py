@@ -52,7 +52,7 @@ def test_a_velocity_that_lags_needs_more():
     rough = paddle(counts_per_metre=5e4, hand=hl.Hand(k=20))
     found = over_compensation(rough, speed="10 mm/s", velocity=hl.velocity.window(deviation="20 um", longest=8), up_to=2.5)
     assert found.limit > 1.02 * found.ideal.hunts_from(0.0)
-    assert "hunts about the hand's spring from dry = " in str(found)
+    assert "hunts about the hand's spring above dry = 1.6048 at viscous = 0," in str(found)
 
 
 def test_the_picture_has_both_and_the_limit():
@@ -65,9 +65,9 @@ def test_the_picture_has_both_and_the_limit():
     ("changes", "options", "words"),
     [
         ({"coulomb": 0.0}, {}, "coulomb = 0"),
-        ({}, {"viscous": 1.0}, "viscous = 1 runs away by itself"),
-        ({}, {"up_to": 0.9}, "nothing keeps moving up to dry = 0.9"),
-        ({"hand": hl.Hand(k=9, intent=lambda t: 0 * t)}, {}, "intent moves"),
+        ({}, {"viscous": 1.0}, "viscous = 1 makes the handle run away by itself;"),
+        ({}, {"up_to": 0.9}, "the handle comes to rest at all values up to dry = 0.9"),
+        ({"hand": hl.Hand(k=9, intent=lambda t: 0 * t)}, {}, "intent of the hand moves,"),
         ({}, {"duration": 0.01}, "wait longer"),
     ],
 )

@@ -57,5 +57,5 @@ def test_what_cannot_be_compared_is_refused(log):
     exact = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(hl.wall()(k=0), duration=0.01)
     with pytest.raises(AnalysisError, match="no true velocity; run a simulated paddle with an encoder"):
         velocity_errors(exact)
-    with pytest.raises(AnalysisError, match="needs those such as hl.velocity.filtered"):
+    with pytest.raises(AnalysisError, match=r"give estimates such as hl.velocity.filtered\(tau='4 ms'\)"):
         velocity_errors(log, ["filter"])

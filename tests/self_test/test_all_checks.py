@@ -58,7 +58,7 @@ def broken(tmp_path, monkeypatch):
     "name, state, words",
     [
         ("fine", OK, "[] in "),
-        ("ends", FAULT, "its process ended with code 7 before it had an answer; it had printed: these words were its last"),
+        ("ends", FAULT, "its process ended with code 7 before it gave an answer; it had printed: these words were its last"),
         ("stops", FAULT, "SystemExit"),
         ("raises", FAULT, "ZeroDivisionError"),
         ("notes", ATTENTION, "llvmlite is not installed"),

@@ -230,17 +230,17 @@ CHECKS = {
     ),
     "wrong inequality": (
         "hl.check('03.late_wall', hl.Scene(force=hl.when(x(n-1) <= x_o, k*(x(n-1) - x_o))))",
-        "turned|wrong way",
+        "reversed|turned|wrong way",
         ">=",
     ),
     "wrong inequality, lab 04": (
         "hl.check('04.half_sample_wall', hl.Scene(force=hl.when(x(n) < x_o, k*(1.5*x(n) - 0.5*x(n-1) - x_o))))",
-        "turned|wrong way",
+        "reversed|turned|wrong way",
         ">=",
     ),
     "wrong inequality, both walls": (
         "hl.check('02.two_walls', hl.Scene(force=hl.when(x(n) <= x_o, k*(x(n) - x_o)) + hl.when(x(n) >= -x_o, k*(x(n) + x_o))))",
-        "turned|wrong way",
+        "reversed|turned|wrong way",
         ">=",
     ),
     "`if` in an answer": (
@@ -271,7 +271,7 @@ CHECKS = {
     "^ in an answer": ("hl.check('02.period_leak', lambda k, D: k*D^2/2)", r"`\^` is not a power", r"D\*\*2"),
     "None in an answer": (
         "def f(k, D):\n    print(D**2)\nhl.check('02.period_leak', lambda k, D: k*f(k, D)/2)",
-        "None, which is no number",
+        "None, which is not a number",
         "return",
     ),
     # lab 06

@@ -127,7 +127,7 @@ def _check(contacts):
         raise ProgramError(f"{c.name}: micro-impulses act at the end of steps, not in time")
     rubbing = [c.name for c in contacts.contacts if c.contact_law.mu != 0]
     if rubbing:
-        raise ProgramError(f"{rubbing[0]}: friction in an impact has one solver here, not two")
+        raise ProgramError(f"{rubbing[0]}: friction in an impact has only one solver, and a reference needs two")
 
 
 def _bounce(contact, constant):
@@ -230,7 +230,7 @@ def _placed(i, place):
     if i.op not in ("input", "state"):
         return i
     if (i.op, i.index) not in place:
-        raise ProgramError("the force holds what impacts added up to, which no state determines")
+        raise ProgramError("the force contains the sum of the impacts, which no state determines")
     op, index = place[i.op, i.index]
     return replace(i, op=op, index=index)
 

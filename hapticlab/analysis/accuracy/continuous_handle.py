@@ -33,7 +33,7 @@ class Followed(Handle):
 
     def sample(self, signal, lag=0):
         if lag:
-            raise ProgramError(f"{signal.__name__}(n-{lag}): a past sample has no meaning between the samples")
+            raise ProgramError(f"{signal.__name__}(n-{lag}): a past sample is not defined between samples")
         return super().sample(signal)
 
     def acceleration(self):
@@ -107,7 +107,7 @@ def between_samples(scene, T, substeps=1, order=None):
     form, decisions = excluded(replace(scene, watch={}), T, ())
     if form.updates:
         signal = next(iter(form.updates))
-        raise ProgramError(f"{signal} is a sequence of samples, and has no meaning between them")
+        raise ProgramError(f"{signal} is a sequence of samples, which is not defined between them")
     form = replace(
         form, force=without_samples(form.force), f=tuple(map(without_samples, form.f)),
         M=tuple(tuple(map(without_samples, row)) for row in form.M),
@@ -133,7 +133,7 @@ def without_samples(expr):
     clocks = {e: e / (n * T) * t for e in expr.atoms(sp.Mul) if n in e.args and T in e.args}
     expr = expr.xreplace(before | clocks)
     if expr.has(delay) and _over_T(expr):
-        raise ProgramError(f"{expr} takes the difference of a delay, whose rate is not known between the samples")
+        raise ProgramError(f"{expr} contains the difference of a delay, whose rate is not known between samples")
     while expr.has(delay):
         expr = expr.xreplace({d: d.args[0] for d in expr.atoms(delay) if not d.args[0].has(delay)})
     return expr.xreplace({T: sp.Float(SHORT) if _over_T(expr) else sp.S.Zero}) if expr.has(T) else expr

@@ -66,7 +66,7 @@ class HandleMotion(ShowsItself):
         expr = sp.sympify(self.x)
         moving = any(hasattr(type(e), "role") for e in expr.atoms(sp.Function))
         if moving or expr.free_symbols - {t}:
-            raise AnalysisError(f"{self.name}: x = {self.x}; a motion of the handle is an expression of hl.t and numbers")
+            raise AnalysisError(f"{self.name}: x = {self.x}; a motion of the handle needs an expression of hl.t and numbers")
         if not (math.isfinite(self.duration) and self.duration > 0):
             raise AnalysisError(f"{self.name}: duration = {self.duration} s; needs a finite duration > 0 s")
 
@@ -144,7 +144,7 @@ def handle_motions(
         _sinusoid("slow sinusoid", low, reach, 1.0 / low, "the lower edge of the band"),
         _sinusoid("quick sinusoid", high, reach, 4.0 / high, "the upper edge of the band"),
         HandleMotion("push", push, 1.0, "into contact and back, with minimum jerk", knots),
-        HandleMotion("drift", reach * minimum_jerk(t) / 2, 1.0, "slow: what is lost of small differences"),
+        HandleMotion("drift", reach * minimum_jerk(t) / 2, 1.0, "slow: shows the loss of small differences"),
         HandleMotion("hand", _hand(low, high, reach, seed), 1.5, f"a hand's mixture of frequencies, seed {seed}"),
     )
 

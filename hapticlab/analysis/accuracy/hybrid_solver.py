@@ -196,7 +196,7 @@ class Hybrid:
         """Change the mode where surfaces were left."""
         self.recent = [t for t in self.recent if t > self.t - 1e-3] + [self.t]
         if len(self.recent) > MOST_EVENTS:
-            raise AnalysisError(f"at t = {self.t:.6g} s the mode changes without end")
+            raise AnalysisError(f"at t = {self.t:.6g} s the mode keeps changing")
         field, mode, guards = self.field, self.mode, self.field.guards
         self.just[:] = False
         self.just[fired] = True

@@ -116,7 +116,7 @@ def force_error(
     else:
         F = np.asarray(program, float)
         if T is None:
-            raise AnalysisError("forces alone do not say their period; give T, such as force_error(F, reference, 1e-3)")
+            raise AnalysisError("an array of forces does not contain its period. Give T, such as force_error(F, reference, 1e-3)")
     return compared(F, reference, T, delay)
 
 
@@ -128,7 +128,7 @@ def recorded(program, motion, *, engine="auto", counts_per_metre=None, rounding=
         position = counted(position, counts_per_metre, rounding)
     columns = {"x": position, "v": velocity}
     if {c.name for c in program.inputs} - set(columns):
-        raise AnalysisError(f"{program.name} takes {program.inputs[-1].name}; a motion of the handle has x and v")
+        raise AnalysisError(f"{program.name} needs {program.inputs[-1].name}; a motion of the handle has only x and v")
     inputs = np.column_stack([columns[c.name] for c in program.inputs]) if program.inputs else None
     return load(program, engine).run(len(times), inputs).outputs[:, 0, 0]
 
@@ -144,7 +144,7 @@ def compared(F, reference, T, delay=0.0):
     per = round(T / step)
     if per < 1 or abs(per * step - T) > 1e-9 * T:
         raise AnalysisError(
-            f"T = {T:g} s; the reference is known every {step:g} s: take a step that divides it, "
+            f"T = {T:g} s, but the reference is known every {step:g} s. Give a step that divides T, "
             f"reference(scene, motion, step={T / 8:g})"
         )
     ticks = min(len(F), (len(reference.t) - 1) // per + 1, math.floor(reference.horizon / T * (1 + 1e-12)) + 1)
@@ -232,7 +232,7 @@ def sensor_floor(
     True
     """
     if not (math.isfinite(counts_per_metre) and counts_per_metre > 0):
-        raise AnalysisError(f"counts_per_metre = {counts_per_metre}; needs a finite number > 0 of counts a metre")
+        raise AnalysisError(f"counts_per_metre = {counts_per_metre}; needs a finite number > 0 of counts per metre")
     taken: dict[str, Any] = {"method": Taylor(order=ORDER), "dtype": "float64"} | options
     program = scene if isinstance(scene, Program) else compile(scene, T=T, live=(), **taken)
     true = recorded(program, reference.motion)

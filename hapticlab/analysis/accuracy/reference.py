@@ -101,8 +101,8 @@ class Reference(ShowsItself):
         k = np.rint(times / self.step)
         if np.any(np.abs(times - k * self.step) > 1e-9) or np.any((k < 0) | (k >= len(self.t))):
             raise AnalysisError(
-                f"F is known every {self.step:g} s up to {self.t[-1]:g} s; ask at whole numbers of that, or give "
-                "reference(..., step=...) a step that divides your sampling period"
+                f"F is known every {self.step:g} s up to {self.t[-1]:g} s. Use times that are multiples of that step, or "
+                "give reference(..., step=...) a step that divides your sampling period"
             )
         return np.where(times <= self.horizon + 1e-9, self.F[k.astype(int)], np.nan)
 
@@ -112,10 +112,10 @@ class Reference(ShowsItself):
 
     def __str__(self) -> str:
         verdict = "certified" if self.certified else "uncertified"
-        until = f", chaotic from {self.horizon:.3g} s on" if self.chaotic else ""
-        until += f", no number from {self.horizon:.3g} s on: the scene faults there" if self.faulted else ""
+        until = f", chaotic after {self.horizon:.3g} s" if self.chaotic else ""
+        until += f", not finite after {self.horizon:.3g} s, where the scene faults" if self.faulted else ""
         agreed = f"two solvers agree to {self.agreement:.2g} N of {self.peak:.3g} N"
-        agreed = agreed if np.isfinite(self.agreement) else f"one solver has {self.peak:.3g} N at most"
+        agreed = agreed if np.isfinite(self.agreement) else f"one solver, whose force is at most {self.peak:.3g} N"
         return f"{self.motion.name}: {verdict}, {agreed}{until} ({self.how})"
 
 

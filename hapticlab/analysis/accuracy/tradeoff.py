@@ -145,7 +145,7 @@ def _motions(given, scene, paddle, T):
         raise AnalysisError(f"motions = {given!r}; needs one HandleMotion(name, x, duration) or several")
     short = next((one for one in motions if one.duration < 2 * max(T)), None)
     if short:
-        raise AnalysisError(f"{short.name} lasts {short.duration:g} s; needs two periods at least, {2 * max(T):g} s")
+        raise AnalysisError(f"{short.name} lasts {short.duration:g} s; needs at least two periods, {2 * max(T):g} s")
     return motions
 
 
@@ -171,7 +171,8 @@ def _step(T):
     common //= next((k for k in range(1, common + 1) if common % k == 0 and common // k <= min(ns) / PLACES), 1)
     if common < SHORTEST * 1e9:
         raise AnalysisError(
-            f"T = {', '.join(f'{one:g}' for one in T)} s have no common part of {SHORTEST:g} s or more; take whole numbers of it"
+            f"T = {', '.join(f'{one:g}' for one in T)} s have no common divisor of {SHORTEST:g} s or more; use multiples of "
+            "one such step"
         )
     return common * 1e-9
 
@@ -226,7 +227,7 @@ class Tradeoff(Tabular):
         target : str, optional
             The first unless given.
         margin : float
-            Longest stable step over the step taken.
+            Longest stable step over the step used.
         held : float, optional
             Most error of the force held over each period, part of the greatest force; any unless given.
         """
@@ -236,7 +237,9 @@ class Tradeoff(Tabular):
     def measured(self, row: Row, cycles: float) -> Tradeoff:
         """Return the trade-off with what a tick of one row's program took on its board [cycles], beside what was predicted."""
         if row.cycles is None or not any(one is row for one in self.table):
-            raise AnalysisError(f"{row.name} on {row.target} is no row of this trade-off that a board runs; take one of .table")
+            raise AnalysisError(
+                f"{row.name} on {row.target} is not a row of this trade-off that a board runs; give one of .table"
+            )
         hz = BOARDS[row.target].hz
         assert hz is not None  # a row with cycles is of a board with a clock
         load = row.load + (cycles - (row.measured or row.cycles)) / (hz * row.T)
@@ -268,7 +271,7 @@ class Tradeoff(Tabular):
             *LEGEND,
         ]
         for target in self.targets:
-            lines += ["", f"{target}: what none beats", self.front(target).brief(), str(self.choose(target=target, **asked))]
+            lines += ["", f"{target}: the best rows", self.front(target).brief(), str(self.choose(target=target, **asked))]
         return "\n".join(lines)
 
     _hidden = ("bench",)

@@ -83,7 +83,9 @@ class NotFeasible(ShowsItself):
 
     def __str__(self) -> str:
         near = f"; nearest is {self.nearest.name}" if self.nearest else ""
-        return "\n".join([f"{self.target}: nothing meets what was asked{near}", *(f"  {words}" for words in self.relax)])
+        return "\n".join(
+            [f"{self.target}: no configuration meets the requirements{near}", *(f"  {words}" for words in self.relax)]
+        )
 
 
 @dataclass(frozen=True)
@@ -173,15 +175,15 @@ def _reasons(rows):
 def _notes(row, asked):
     if asked.allowed(row) > asked.tolerance:
         yield (
-            f"tolerance raised from {percent(asked.tolerance)} to {percent(asked.allowed(row))}: half the error that the encoder "
-            f"alone makes, {percent(row.sensor_floor)}"
+            f"tolerance raised from {percent(asked.tolerance)} to {percent(asked.allowed(row))}: half the error that the "
+            f"encoder alone causes, {percent(row.sensor_floor)}"
         )
     if row.passive is None and asked.passive:
         yield "passivity is not known"
     if row.margin is None:
         yield "the margin of stability is not known"
     if row.b_where and asked.passive:
-        yield f"passive in small motions, the scene is not linear: it asks for the most damping at {row.b_where}"
+        yield f"passive for small motions only, because the scene is not linear; it needs the most damping at {row.b_where}"
     if row.status.name in UNSURE:
         yield f"{row.status}: {row.why}"
 
@@ -203,7 +205,7 @@ def _elsewhere(good):
     """Yield the targets that do it, each with its least load."""
     for target in dict.fromkeys(row.target for row in good):
         row = min((row for row in good if row.target == target), key=lambda row: row.load)
-        yield f"another board: {target} takes {percent(row.load)} of the period with {row.name}"
+        yield f"another board: {target} needs {percent(row.load)} of the period with {row.name}"
 
 
 def _each(row, asked):
@@ -215,26 +217,26 @@ def _words(name, row, asked):
     if name == "tolerance":
         return f"tolerance {percent(row.err_max + row.doubt)} instead of {percent(asked.allowed(row))}"
     if name == "held":
-        return f"held error {percent(row.err_hold)} instead of {percent(asked.held)}, or a shorter T, to be tried"
+        return f"held error {percent(row.err_hold)} instead of {percent(asked.held)}, or a shorter T (try it)"
     if name == "encoder":
-        return f"a finer encoder: this one alone makes an error of {percent(row.sensor_floor)} of the greatest force"
+        return f"a finer encoder: this one alone causes an error of {percent(row.sensor_floor)} of the greatest force"
     if name == "doubt":
         apart = "only one of the two solved it" if row.doubt == math.inf else f"they differ by {percent(row.doubt)}"
-        return f"other motions, on which the two solvers of the reference agree: here {apart}, and no error is certain"
+        return f"other motions, on which the two solvers of the reference agree; here {apart}, so no error is certain"
     if name == "load":
-        longer = f"T = {row.T * row.load / asked.load * 1e3:.3g} ms or longer, to be tried"
+        longer = f"T = {row.T * row.load / asked.load * 1e3:.3g} ms or longer (try it)"
         if row.status == TOO_LARGE or not row.load < math.inf:
-            return row.why or "a board that takes it"
+            return row.why or "a board that can run it"
         return f"load {percent(row.load)} instead of {percent(asked.load)}, or {longer}"
     if name == "passive":
         if row.b_req == math.inf:
-            return "damping in the scene itself, no device has enough, or passive=False: not in every hand"
+            return "damping in the scene itself, because no device has enough, or passive=False (then not stable in every hand)"
         part = f", or its stiffness, damping and mass all times {row.b_device / row.b_req:.2g}" if row.b_device else ""
-        asks = f"a device with b >= {row.b_req:.3g} N s/m, this one has {row.b_device:.3g} N s/m"
-        return f"{asks}{part}, or passive=False: not in every hand"
+        asks = f"a device with b >= {row.b_req:.3g} N s/m (this one has {row.b_device:.3g} N s/m)"
+        return f"{asks}{part}, or passive=False (then not stable in every hand)"
     if name == "margin":
         if not row.margin:
-            return "another method: with this one every step is too long"
+            return "a different method, because with this one every step is too long"
         softer = f"stiffness {(row.margin / asked.margin) ** 2:.2g} times as large"
         return f"margin {row.margin:.2g} instead of {asked.margin:g}, or {softer}"
     return f"contacts that last {STEPS_PER_CONTACT / row.steps_per_contact:.2g} times as long, softer or heavier"

@@ -67,7 +67,7 @@ class Row(ShowsItself):
     load : float
         Part of the period that is taken: on a board by the rest of the step and the telemetry too.
     margin, steps_per_contact : float or None
-        Largest stable step over the step taken; steps in the shortest contact, inf where contacts are located or absent.
+        Largest stable step over the step used; steps in the shortest contact, inf where contacts are located or absent.
     b_req, b_device : float or None
         Damping [N s/m] that a device needs for passivity in every hand, and has.
     b_where : str
@@ -150,9 +150,10 @@ _SHOWN = ("target", "method", "T", "substeps", "hold", "precision", "err_max", "
 #: left out where rows of one target are compared, which all ran
 _ASIDE = ("target", "rms", "cycles", "time", "contact", "passive", "status")
 LEGEND = (
-    "err max and held: error of the force at the samples, and held over the period; sensor: made by the encoder alone; all as",
-    "parts of the greatest force. order: seen/claimed, as a power of T; load: part of the period; margin: longest stable step",
-    "over the step taken; contact (in the table): steps in the shortest; b_req: damping a passive device needs [N s/m]",
+    "err max and held: error of the force at the samples, and held over the period; sensor: caused by the encoder alone; all as",
+    "fractions of the greatest force. order: found/expected, as a power of T; load: fraction of the period; margin: longest "
+    "stable step",
+    "over the step used; contact (in the table): steps in the shortest; b_req: damping that a passive device needs [N s/m]",
 )
 
 
@@ -280,10 +281,10 @@ def _certain(row, bench):
     if row.status != OK:
         return row
     if bench.chaotic is not None:
-        why = "from there on two solvers of the reference differ; errors are those before"
+        why = "the two solvers of the reference differ from then on; the errors are those before that time"
         return replace(row, status=Status("chaotic", f"after {bench.chaotic:.3g} s"), why=why)
     if bench.faulted is not None:
-        why = "from there on the force of the reference is no number; errors are those before"
+        why = "the force of the reference is not finite from then on; the errors are those before that time"
         return replace(row, status=Status("faulted", f"after {bench.faulted:.3g} s"), why=why)
     if row.err_max < 10 * bench.doubt:
         return replace(row, status=Status("uncertified"), why=f"the solvers of the reference differ by {percent(bench.doubt)}")

@@ -147,7 +147,7 @@ def _beaten(setting, group):
     for t in group:
         cheaper = evaluations(t.setting.method) <= evaluations(setting.method)
         if cheaper and _ample(t) and t.error[0] <= SAME * floor:
-            return f"{t.setting.method} already has the error that hold={setting.hold!r} alone makes, {percent(floor)}"
+            return f"{t.setting.method} already has the error that hold={setting.hold!r} alone causes, {percent(floor)}"
     return ""
 
 
@@ -159,18 +159,20 @@ def _no_better(setting, trial, floors, found):
     if trial.margin is not None and trial.margin < MARGIN:
         return ""
     if error <= SAME * floors[_shared(s)]:
-        return f"substeps={s.substeps} already has the error that hold={s.hold!r} alone makes, {percent(error)}"
+        return f"substeps={s.substeps} already has the error that hold={s.hold!r} alone causes, {percent(error)}"
     if s.method in METHODS and METHODS[s.method].steps > 1:
-        return f"{s.method} evaluates once a step: for what substeps cost, a shorter T shortens the hold too"
+        return f"{s.method} evaluates once per step, so for the cost of substeps a shorter T also shortens the hold"
     before = [t for t in found if t.setting.substeps < s.substeps and replace(t.setting, substeps=s.substeps) == s]
     if any(t.error[0] <= LESS * error for t in before):
-        return f"substeps={s.substeps} did not make the error much less than fewer did, {percent(error)}"
+        return f"substeps={s.substeps} did not make the error much smaller than fewer substeps did, {percent(error)}"
     expected = error / (setting.substeps / s.substeps) ** exactness(s.method)
     for t in found:
         cheaper = t.setting.substeps * evaluations(t.setting.method) <= setting.substeps * evaluations(s.method)
         if cheaper and _shared(t.setting) == _shared(s) and _ample(t) and t.error[0] <= expected:
             other = f"{t.setting.method} with substeps={t.setting.substeps}"
-            return f"{other} has an error of {percent(t.error[0])}, here {percent(expected)} is expected for no less work"
+            return (
+                f"{other} has an error of {percent(t.error[0])}, here {percent(expected)} is expected for at least the same work"
+            )
     return ""
 
 

@@ -30,7 +30,7 @@ def explained(row, others, every):
 def _error(row, others):
     yield (
         f"error of the force at the samples {percent(row.err_max)} of the greatest, rms {percent(row.err_rms)}; "
-        f"held over the period {percent(row.err_hold)}, which only a shorter T makes less"
+        f"held over the period {percent(row.err_hold)}, which only a shorter T reduces"
     )
     of_hold = {}  # the error of the most exact method with each hold, which is the hold's own
     for r in sorted(others, key=lambda r: (exactness(r.method), r.substeps)):
@@ -38,27 +38,27 @@ def _error(row, others):
             of_hold[r.hold] = r.err_max
     own, best = of_hold[row.hold], min(of_hold, key=of_hold.get)
     if row.err_max > SAME * own:
-        yield f"hold={row.hold!r} alone makes {percent(own)} of that: the rest is of the method's steps"
+        yield f"hold={row.hold!r} alone causes {percent(own)} of that; the rest comes from the steps of the method"
     elif of_hold[best] < row.err_max / SAME:
         yield f"exact methods have {percent(own)} with hold={row.hold!r}, and with hold={best!r} {percent(of_hold[best])}"
     if row.sensor_floor > 0:
         side = "below" if row.err_max < row.sensor_floor else "above"
-        yield f"{side} what the encoder alone makes, {percent(row.sensor_floor)}"
+        yield f"{side} the error of the encoder alone, {percent(row.sensor_floor)}"
     if row.doubt > row.err_max / 10:
-        yield f"the solvers of the reference differ by {percent(row.doubt)}: no smaller error is certain"
+        yield f"the solvers of the reference differ by {percent(row.doubt)}, so no smaller error is certain"
 
 
 def _order(row):
     if row.order_seen is not None and row.order_claimed is not None:
         missed = row.order_seen < row.order_claimed - MISSED and row.err_max > 1e-5
-        but = f", less than the {row.order_claimed:g} that is claimed" if missed else f"; claimed {row.order_claimed:g}"
+        but = f", less than the expected {row.order_claimed:g}" if missed else f"; expected {row.order_claimed:g}"
         yield f"from this T to the next shorter the error falls with order {row.order_seen:.2f}{but}"
 
 
 def _stability(row):
     if row.margin is not None:
-        colour = "green" if row.margin >= 2 else "amber, try it for long" if row.margin >= 1 else "unstable sooner or later"
-        yield f"the longest stable step is {row.margin:.3g} times the step taken: {colour}"
+        colour = "green" if row.margin >= 2 else "amber, test it in a long run" if row.margin >= 1 else "unstable sooner or later"
+        yield f"the longest stable step is {row.margin:.3g} times the step used: {colour}"
     if row.steps_per_contact is not None and row.steps_per_contact < float("inf"):
         enough = "enough" if row.steps_per_contact >= 10 else "10 are needed, or contacts that are located (method='taylor')"
         yield f"{row.steps_per_contact:.3g} steps in the shortest contact: {enough}"
@@ -66,20 +66,20 @@ def _stability(row):
 
 def _cost(row, every):
     if row.target == "pc":
-        about = "about, from the time of the boards' machine: " if row.estimated else ""
-        yield f"{about}{duration(row.seconds)} a tick on this computer, {percent(row.load)} of the period"
+        about = "estimated from the time of the boards' virtual machine: " if row.estimated else ""
+        yield f"{about}{duration(row.seconds)} per tick on this computer, {percent(row.load)} of the period"
     if row.cycles is None:
         return
     yield (
-        f"{row.cycles:.0f} cycles a tick, predicted, {duration(row.seconds)}; with the rest of the step and telemetry every "
+        f"{row.cycles:.0f} cycles per tick (predicted), {duration(row.seconds)}; with the rest of the step and telemetry every "
         f"{every} ticks {percent(row.load)} of the period"
     )
     if row.measured is not None:
-        yield f"measured {row.measured:.0f} cycles, {row.measured / row.cycles:.3f} of what was predicted"
+        yield f"measured {row.measured:.0f} cycles, {row.measured / row.cycles:.3f} of the prediction"
 
 
 def _passivity(row):
     answer = "passive in every passive hand" if row.passive else "not passive in every hand"
     yield f"needs a device with b >= {row.b_req:.3g} N s/m, and has {row.b_device:.3g} N s/m: {answer}"
     if row.b_where:
-        yield f"that is of small motions, the scene is not linear: the most is asked for at {row.b_where}"
+        yield f"this holds for small motions, because the scene is not linear; the most damping is needed at {row.b_where}"

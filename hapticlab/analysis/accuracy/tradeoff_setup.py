@@ -47,8 +47,8 @@ class Bench:
         if not self.peak > 0:
             motions = ", ".join(known.motion.name for known in self.runs)
             raise AnalysisError(
-                f"{self.scene.name}: its force stays 0 N or is no number during {motions}, so there is nothing to compare; "
-                "give motions=[HandleMotion(...)] that bring the handle to where it acts"
+                f"{self.scene.name}: during {motions} the force is 0 N throughout or is not finite, so there is nothing to "
+                "compare. Give motions=[HandleMotion(...)] that move the handle to where the force acts"
             )
 
     @functools.cached_property
@@ -65,7 +65,7 @@ class Bench:
     def certainty(self) -> str:
         """How far the solvers of the reference agree, in words."""
         if not np.isfinite(self.doubt):
-            return "a motion has one solver only, so that no error is certain"
+            return "a motion has only one solver, so no error is certain"
         return f"the solvers of its reference differ by {percent(self.doubt)} of it"
 
     @property
@@ -88,9 +88,13 @@ class Bench:
         """What is to be known of the whole, in sentences."""
         told, most = [], getattr(self.paddle, "force_max", None)
         if most and self.peak > most:
-            told += [f"the paddle gives {most:.3g} N at most: what is above is not felt, and no error here counts it"]
+            told += [
+                f"the paddle gives at most {most:.3g} N; a larger force is not felt, and the errors here do not account for that"
+            ]
         if any(_lagged(expr) for expr in _equations(self.scene)):
-            told += ["past samples and delayed forces are those of now in the reference: what they are late by counts as error"]
+            told += [
+                "the reference uses present values for past samples and delayed forces, so their lateness counts as an error"
+            ]
         return told
 
     @functools.cached_property

@@ -101,7 +101,7 @@ def _tried(bench, setting, program, again):
         F = loaded.run(len(samples), samples).outputs[:, 0, 0]
         error = compared(F, known, setting.T, bench.delay)
         if error.unstable_at == error.unstable_at:
-            why = f"during {known.motion.name} its force passes a hundred times the greatest, {known.peak:.3g} N"
+            why = f"during {known.motion.name} its force exceeds a hundred times the greatest, {known.peak:.3g} N"
             return replace(trial, status=Status("unstable", f"at t={error.unstable_at:.3g} s"), why=why)
         errors.append((error.max, error.rms, error.hold))
     most, rms, hold = np.transpose(errors) / bench.peak

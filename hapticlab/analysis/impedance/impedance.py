@@ -98,7 +98,9 @@ def impedance(scene: Scene, frequency: ArrayLike | None = None) -> Impedance | N
         frequency = np.asarray(frequency, float)
     except (TypeError, ValueError):
         what = f"a {type(frequency).__name__}"
-        raise AnalysisError(f"frequency is {what}; needs numbers in Hz, hl.passivity.impedance(scene, [1, 10, 100])") from None
+        raise AnalysisError(
+            f"frequency is {what}; needs numbers in Hz, such as hl.passivity.impedance(scene, [1, 10, 100])"
+        ) from None
     if not (np.isfinite(frequency).all() and (frequency > 0).all()):
         raise AnalysisError(f"frequency = {frequency} Hz; an impedance needs finite frequencies > 0")
     return port_of(scene).impedance(frequency)
@@ -162,7 +164,7 @@ def _check_linear(scene, found):
         at |= {p: scene.values.get(p.name, 1e-3) for p in at if isinstance(p, Parameter)}
         pull = float(found.graph.evaluate([expr], at)[0])
         if abs(pull) > 1e-12:
-            why = why or f"{where} holds {pull:.3g} at rest; measure its coordinates from where it rests"
+            why = why or f"{where} contains {pull:.3g} at rest; measure its coordinates from the rest position"
     if why:
         raise AnalysisError(f"{scene.name}: {why}; a reduction needs masses, springs and dampers that are linear")
 
@@ -174,6 +176,6 @@ def _check_memory(scene, form):
             role = getattr(type(f), "role", None)
             if isinstance(f, delay) or role == "signal" or (role == "handle" and lag_of(f)):
                 raise AnalysisError(
-                    f"{scene.name}: {f} remembers samples, so the scene has no impedance in continuous time; "
-                    "needs a force of x(n), v(n) and coordinates"
+                    f"{scene.name}: {f} uses past samples, so the scene has no impedance in continuous time; needs a force "
+                    "of x(n), v(n) and coordinates"
                 )

@@ -63,7 +63,7 @@ def network_of(scene, port):
     if not masses.all() or not N:
         first = [type(q).__name__ for q, has in zip(port.coordinates, masses, strict=True) if not has]
         what = f"{', '.join(first)} has no mass" if first else "it has none"
-        raise AnalysisError(f"{scene.name}: a reduction is of masses behind the handle, and {what}")
+        raise AnalysisError(f"{scene.name}: a reduction needs masses behind the handle, and {what}")
     scale = _row_scale(scene, port)
     mass = scale[:, None] * port.M
     matrices = [
@@ -76,8 +76,8 @@ def network_of(scene, port):
         values = np.linalg.eigvalsh(matrix)
         if values[0] < -ROUNDING * abs(values).max() or (what == "mass" and values[0] <= 0):
             raise AnalysisError(
-                f"{scene.name}: its {what} is negative in some direction ({values[0]:.3g}), so it is not passive and there "
-                "is no passivity to keep; needs masses > 0, springs and dampers >= 0"
+                f"{scene.name}: its {what} is negative in some direction ({values[0]:.3g}), so the scene is not passive and "
+                "has no passivity to preserve; needs masses > 0, springs and dampers >= 0"
             )
     return Network(mass, damping, stiffness, _starts(scene, port))
 
@@ -100,8 +100,8 @@ def _row_scale(scene, port):
     off = np.abs(np.array(rows).reshape(-1, N) @ scale - right).max(initial=0.0)
     if off > ROUNDING * 100 * max(1.0, np.abs(scale).max(initial=0.0)) or not np.all(np.abs(scale) > ROUNDING):
         raise AnalysisError(
-            f"{scene.name}: what moves the masses does not pull back on the handle with the same springs and dampers, so "
-            "there is no network of masses to reduce; use the force that moves the first mass as the scene's force"
+            f"{scene.name}: the springs and dampers that move the masses do not act on the handle in the same way, so there "
+            "is no network of masses to reduce. Use the force that moves the first mass as the force of the scene"
         )
     return scale
 
@@ -116,7 +116,7 @@ def _starts(scene, port):
             slope = (given - at_zero).xreplace({x(n): sp.S.One})
             if not (at_zero.is_number and slope.is_number):
                 raise AnalysisError(
-                    f"{scene.name}: {type(q).__name__} starts at {given}; a reduction needs numbers and multiples of x(n)"
+                    f"{scene.name}: {type(q).__name__} starts at {given}; a reduction needs a number or a multiple of x(n)"
                 )
             found[i, :, j] = float(at_zero), float(slope)
     return found

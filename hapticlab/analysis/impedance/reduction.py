@@ -117,8 +117,9 @@ class Reduction(ShowsItself):
             "  up to [Hz]  |Z_r - Z|/|Z + hand + paddle|",
             *(f"  {f:>10.4g}  {self.below(f):.2g}" for f in (high / 8, high / 4, high / 2, high) if f > self.band[0]),
             *map(_shifted, self.poles),
-            f"  a device's damping for the full scene {needed} (T = 1 ms)",
-            f"  {'within' if self.within else 'past'} the tolerance of {self.tolerance:.3g} over {self.band[0]:g} to {high:g} Hz",
+            f"  device damping needed for the full scene {needed} (T = 1 ms)",
+            f"  {'within' if self.within else 'outside'} the tolerance of {self.tolerance:.3g} over {self.band[0]:g} to "
+            f"{high:g} Hz",
         ]
         return "\n".join(lines)
 
@@ -191,12 +192,12 @@ def reduction(
     if best.within or (accept and masses is not None):
         return Reduction(**{**vars(best), "tried": tried})
     shown = ", ".join(f"{error:.2g} with {count} mass{'es' * (count > 1)}" for count, error in tried)
-    which = "takes it" if masses is not None else f"with masses={best.masses} takes that"
-    cure = f"accept=True {which} all the same"
+    which = "takes it" if masses is not None else f"with masses={best.masses} uses that"
+    cure = f"accept=True {which} in any case"
     moved = [_shifted(pair).strip() + ". " for pair in best.poles if best.shift > BESIDE]
     raise AnalysisError(
-        f"{''.join(moved)}{scene.name}: past the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown}; "
-        f"ask a narrower band, or {cure}"
+        f"{''.join(moved)}{scene.name}: outside the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown}. Give a "
+        f"narrower band, or {cure}"
     )
 
 
@@ -214,7 +215,7 @@ def _best(scene, network, paddle, band, tolerance, count):
         if best is None or found.error.max() < best.error.max():
             best = found
     if best is None:
-        raise AnalysisError(f"{scene.name}: the handle tells fewer than {count} masses apart; ask for fewer")
+        raise AnalysisError(f"{scene.name}: the motion of the handle shows fewer than {count} separate masses; give fewer")
     best = best.at(refined(best.frequency, lambda f: best.at(f).error, poles))
     resonances = held(best.reduced)[0].imag / (2 * np.pi)
     pairs = tuple((float(f), float(min(resonances, key=lambda r: abs(r - f), default=np.inf))) for f in poles)
@@ -266,8 +267,8 @@ def _band(band):
 def _wanted(scene, masses, N):
     if masses is None:
         if N < 2:
-            raise AnalysisError(f"{scene.name} has {N} mass; there is none to spare")
+            raise AnalysisError(f"{scene.name} has {N} mass, so no mass can be left out")
         return range(1, N)
     if isinstance(masses, bool) or not (isinstance(masses, int) and 0 < masses < N):
-        raise AnalysisError(f"masses = {masses!r}; {scene.name} has {N}, a reduction has at least 1 and fewer than that")
+        raise AnalysisError(f"masses = {masses!r}; {scene.name} has {N} masses; a reduction needs at least 1 and fewer than {N}")
     return [masses]

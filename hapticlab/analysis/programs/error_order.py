@@ -53,7 +53,7 @@ class Order(ShowsItself):
     def __str__(self) -> str:
         least = float(self)
         if least == math.inf:
-            return "no error but rounding"
+            return "only rounding errors"
         first = [name for name, order in self.limits.items() if order == least]
         others = [f"{name}: {order:g}" for name, order in self.limits.items() if order > least and order < math.inf]
         return f"{least:g} ({'; '.join([', '.join(first), *others])})"
@@ -146,7 +146,7 @@ def _of_hold(variables, seen):
         elif isinstance(variable, acceleration):
             limits["the handle's acceleration, estimated"] = 1
         elif isinstance(variable, delay):
-            limits[f"{short(variable, 40)} a sample late, held over a period"] = 1
+            limits[f"{short(variable, 40)} late by one sample, held over a period"] = 1
         elif role == "signal" or (isinstance(variable, (x, v)) and variable.has(n)):
             limits[f"{variable} {kept}"] = of_held
     return limits
@@ -157,7 +157,7 @@ def _of_force(felt, seen, velocity, force_at):
     limits = {}
     states = [a for a in felt if getattr(type(a.expr if a.is_Derivative else a), "role", None) in ("coordinate", "reaction")]
     if force_at == "after" and states:
-        limits["states a period late"] = 1
+        limits["states late by one period"] = 1
     if force_at == "mean":
         followed = [a for a in felt if a in (x(t), v(t))]
         limits |= {f"{name} in the force": order for name, order in _of_hold(followed, seen).items()}

@@ -62,12 +62,13 @@ WITHOUT_STEPS = {
     for m in (
         WithoutSteps(
             "exact", "rounding", "1 product",
-            "a constant matrix on the S states, S^2 products; a series where a mode ends; only what is linear in each mode",
+            "a constant matrix on the S states, S^2 products; a series where a mode ends; only for scenes that are linear "
+            "in each mode",
             math.inf, math.inf,
         ),
         WithoutSteps(
             "taylor", "rounding", "1 series",
-            "terms of each operation until rounding, so many times a step of rk4; events located inside the step",
+            "terms of each operation up to rounding, many times the cost of rk4; events located inside the step",
             1.0, 1.0,
         ),
     )
@@ -150,9 +151,9 @@ def _draw_region(axes, method, style):
 
 
 _BESIDE = (
-    "gain: part of its energy that a spring gains in a step, in the long run; w: its frequency [rad/s]; h: step [s]",
+    "gain: fraction of its energy that a spring gains per step, in the long run; w: its frequency [rad/s]; h: step [s]",
     "nystrom4: only where accelerations are free of velocities (else its order would be 2)",
-    "adams_bashforth: only without contacts and cases; with one step a period it looks at samples alone, whatever the hold",
+    "adams_bashforth: only without contacts and cases; with one step per period it uses samples alone, whatever the hold",
     *(f"{m.name}: {m.cost}" for m in WITHOUT_STEPS.values()),
 )
 

@@ -57,7 +57,7 @@ class Replay(ShowsItself):
                 scale, label = axis_label(name, self.units[name])
                 axes.plot(self.log.t, scale * self.log.channels[name], **STYLES[0])
                 axes.set(ylabel=label)
-                axes.set_title(f"computed every {self.every} rows, wrong by {error:.2g} {self.units[name]}", fontsize="small")
+                axes.set_title(f"computed every {self.every} rows, error {error:.2g} {self.units[name]}", fontsize="small")
             rows[-1].set_xlabel("time t [s]")
         return figure
 
@@ -107,9 +107,9 @@ def replay(
     """
     check_record(log, "replay")
     if not isinstance(view, Scene):
-        raise AnalysisError(no_scene(view, "needs one that watches something, as hl.mechanics.requires(scene).view"))
+        raise AnalysisError(no_scene(view, "needs a scene that watches something, such as hl.mechanics.requires(scene).view"))
     if not view.watch:
-        raise AnalysisError(f"{view.name} watches nothing; needs hl.Scene(..., watch=[...])")
+        raise AnalysisError(f"{view.name} watches nothing; give it hl.Scene(..., watch=[...])")
     every = _rows(every, view, len(log))
     given = {name: value for name, value in log.parameters.items() if name in view.parameters}
     view = view(**{**view.values, **given})
@@ -142,8 +142,8 @@ def _rows(every, view, rows):
             memory = _memory(expr)
             if memory is not None:
                 raise ProgramError(
-                    f"every = {count}: {memory} counts samples, so at a slower rate {view.name} would mean something else; "
-                    "replay it with every=1"
+                    f"every = {count}: {memory} depends on the sampling period, so at a slower rate {view.name} would have "
+                    "a different meaning. Replay it with every=1"
                 )
     return count
 

@@ -80,7 +80,7 @@ class Requirements(ShowsItself):
         method = f", {p.facts['method']}" if "method" in p.facts else ""
         states = f"{len(p.states)} states" + (f" ({self.made_of})" if p.states else "")
         return (
-            f"{p.name} at T = {p.T:g} s{method}: {len(p)} instructions a tick and {states}; "
+            f"{p.name} at T = {p.T:g} s{method}: {len(p)} instructions per tick and {states}; "
             f"{self.everything} with nothing left out"
         )
 

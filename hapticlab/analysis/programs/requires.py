@@ -84,9 +84,9 @@ class _Report:
         everything = self._everything()
         rest = everything - len(self.program) - sum(i.saves for i in dropped if i.saves and i.kind != PART)
         if rest and dropped:
-            dropped.append(Item("shared", "together", "what the rows above share, or save only beside each other", rest))
+            dropped.append(Item("shared", "together", "shared by the rows above, or saved only together", rest))
         offers, declined = self._offers(felt, view)
-        why = "its declared range is relied upon, and beyond it the motor goes off"
+        why = "its declared range is used, and outside it the motor switches off"
         kept, made_of = (*self._kept(), *(Item("state", name, why) for name in watched)), self._made_of()
         return Requirements(self.program, kept, tuple(dropped), offers, everything, felt, view, made_of, declined)
 
@@ -123,7 +123,7 @@ class _Report:
                 yield Item("alias", type(q).__name__, f"another name of {short(means, 40)}: no state of its own")
         for name, p in self.scene.parameters.items():
             if any(c.name == name for c in self.program.parameters):
-                yield Item("parameter", name, f"live: may be set while it runs{_limits(p)}")
+                yield Item("parameter", name, f"live: can be changed while it runs{_limits(p)}")
 
         for model in self.form.models:
             for c in model.contacts:
@@ -161,7 +161,7 @@ class _Report:
             yield Item("parameters", ", ".join(folded), "folded, all of them together; each by itself:", self._more(live=None))
         for name, p in self.scene.parameters.items():
             if name not in used:
-                yield Item("parameter", name, "only what is left out uses it")
+                yield Item("parameter", name, "only parts that are left out use it")
             elif name in folded:
                 why = f"folded to {self.scene.values[name]:g} {p.unit}".removesuffix(" 1")
                 yield Item(PART if len(folded) > 1 else "parameter", name, why, self._more(live=(*live, name)))
@@ -187,7 +187,7 @@ class _Report:
     def _pairs(self):
         for model in self.form.models:
             for pair in getattr(model.contacts, "dropped", ()):
-                yield Item("pair", f"{pair.first}, {pair.second}", f"cannot meet: {pair.why}")
+                yield Item("pair", f"{pair.first}, {pair.second}", f"cannot touch: {pair.why}")
 
     def _velocity(self):
         if not any("v(n" in c.name or c.name == "x(n-1)" for c in (*self.program.states, *self.program.inputs)):
@@ -240,7 +240,7 @@ class _Report:
             seen = set(self.whole.paths(*self.whole.channels)) - set(self.whole.channels)
             names = sorted(seen - set(self.whole.paths(FORCE)))
             more = self._more(felt)
-            why = "only a view shows it: run .felt on the board, and hl.records.replay(.view, log) beside the record"
+            why = "only a view shows it. Run .felt on the board, and hl.records.replay(.view, log) on the record"
             offered.append(Item("view", ", ".join(names), why, None if more is None else -more))
         if self.form.coordinates and not self.options["method"].exact:
             linear, declined = self._linear()
@@ -269,7 +269,7 @@ def _in_words(item):
     """An item whose savings are none without a number, and with words where it costs instructions."""
     if item.saves is None or item.saves > 0:
         return item
-    return replace(item, saves=None, why=item.why + (f"; this takes {-item.saves} more" if item.saves else ""))
+    return replace(item, saves=None, why=item.why + (f"; this costs {-item.saves} more" if item.saves else ""))
 
 
 def _limits(p):

@@ -105,9 +105,9 @@ def _found(log, driven):
     """The chatter of the last half of a record."""
     t, x, F = (np.asarray(a, float) for a in (log.t, log.channels.get("x_true", log.x), log.F))
     if len(t) < SHORTEST:
-        raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least {SHORTEST}: run longer")
+        raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least {SHORTEST}. Run longer")
     if not (np.isfinite(x).all() and np.isfinite(F).all()):
-        raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
+        raise AnalysisError(f"the record contains values that are not finite; fault: {log.fault or 'none recorded'}")
     half, quarter = len(t) // 2, len(t) // 4
     contacts = contact_rate(F[-half:], log.T)
     rest, travel = float(x[-quarter:].mean()), float(np.ptp(x[-quarter:]))

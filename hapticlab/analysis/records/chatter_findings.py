@@ -96,15 +96,18 @@ class Chatter(ShowsItself):
 
     def __str__(self) -> str:
         if self.state == "runaway":
-            return f"runaway: the handle moves on by {1e3 * self.travel:.4g} mm in the last quarter, faster and faster"
+            return f"runaway: the handle moves by {1e3 * self.travel:.4g} mm in the last quarter, faster and faster"
         if self.state == "driven":
-            return f"driven: {1e3 * self.driven:.4g} mm follow what drives the handle; no oscillation of its own beside it"
+            return (
+                f"driven: {1e3 * self.driven:.4g} mm follow the excitation of the handle; the handle has no oscillation "
+                "of its own"
+            )
         if self.scatter:
             noise = f"the sensor scatters by {1e3 * self.scatter:.3g} mm (standard deviation)"
-            return f"none: the handle rests at {1e3 * self.rest:.4g} mm; {noise}, which is no motion"
+            return f"none: the handle rests at {1e3 * self.rest:.4g} mm; {noise}, which is not motion"
         if self.state == "none":
             moves = self.travel > 1e-3 * abs(self.rest) + 1e-6
-            where = f"moves on by {1e3 * self.travel:.4g} mm" if moves else f"rests at {1e3 * self.rest:.4g} mm"
+            where = f"drifts by {1e3 * self.travel:.4g} mm" if moves else f"rests at {1e3 * self.rest:.4g} mm"
             return f"none: the handle {where}, with no oscillation in the last half"
         tone = "no measurable frequency" if self.frequency is None else f"{self.frequency:.4g} Hz"
         size = f"{1e3 * self.amplitude:.4g} mm"
@@ -113,7 +116,7 @@ class Chatter(ShowsItself):
         place = f"{size} at {tone}, {self.contacts_per_second:.4g} contacts/s"
         if self.dither:
             place += "; the sensed position moves by one encoder count only: dither of the encoder"
-        place += f", beside {1e3 * self.driven:.4g} mm that are driven" if self.driven else ""
+        place += f", in addition to {1e3 * self.driven:.4g} mm that follow the excitation" if self.driven else ""
         if self.locked:
             cycle = f", repeats itself every {self.period} samples" if self.period else ""
             return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s){cycle}"
@@ -124,9 +127,9 @@ class Chatter(ShowsItself):
         if self.state == "chatter" and self.ends_at:
             low, high = (1e3 * a for a in self.ends_at)
             return f"chatter: {place}; it shrinks towards a cycle of {low:.3g} to {high:.3g} mm (growth {self.growth:+.3g} 1/s)"
-        cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
-        cure = "it may end in a cycle and not at rest: run longer" if self.levels_off else cure
+        cure = "it dies out" if self.state == "decaying" else "run longer to find its final amplitude"
+        cure = "it may end in a cycle instead of at rest; run longer" if self.levels_off else cure
         if self.state == "undecided":
-            cure = "it may die out or last: run longer" + (f", {self.longer:.2g} s may tell" if self.longer else "")
+            cure = "it may die out or last; run longer" + (f", {self.longer:.2g} s may be enough" if self.longer else "")
         growth = "growth unknown" if math.isnan(self.growth) else f"growth {self.growth:+.3g} 1/s"
         return f"{self.state}: {place}; not locked ({growth}): {cure}"

@@ -17,15 +17,17 @@ def drive_of(log, driven):
     """The drive, one number a sample, from a Hand, a function of t [s], a watched channel's name or an array."""
     if isinstance(driven, Hand):
         if not driven.moves:
-            raise AnalysisError(f"driven by a hand with {driven}: it does not move; needs a hand whose intent is a function of t")
+            raise AnalysisError(
+                f"driven by a hand with {driven}, which does not move; needs a hand whose intent is a function of t"
+            )
         return driven.samples(len(log) - 1, log.T, first=round(log.t[0] / log.T))
     if isinstance(driven, str):
         return np.asarray(getattr(log, driven), float)
     drive = np.asarray(driven(log.t) if callable(driven) else driven, float)
     if drive.shape != log.t.shape or not np.isfinite(drive).all():
         raise AnalysisError(
-            f"driven: shape {drive.shape} for {len(log)} samples; needs one finite number a sample, a function of t, a hand or "
-            "the name of a watched channel"
+            f"driven: shape {drive.shape} for {len(log)} samples; needs one finite number per sample, a function of t, a "
+            "hand or the name of a watched channel"
         )
     return drive
 
@@ -38,7 +40,7 @@ def following(x, drive):
     """
     size, half = float(np.ptp(drive)), len(x) // 2
     if size == 0:
-        raise AnalysisError("driven: the drive is constant; a handle that rests has nothing to follow")
+        raise AnalysisError("driven: the drive is constant, so the handle has no excitation to follow; give a drive that changes")
     scaled = 2 * (drive - drive.min()) / size - 1
     found = [part for part in (by_memory(x, scaled), by_loop(x, scaled)) if part is not None]
     return min(found, key=lambda part: np.std(x[-half:] - part))

@@ -70,7 +70,7 @@ class Energy(ShowsItself, Guessed):
 
     def __str__(self) -> str:
         if np.isnan(self.generated):
-            drawn = f"{1e3 * self.extracted:.4g} mJ was drawn from the environment at most"
+            drawn = f"at most {1e3 * self.extracted:.4g} mJ was drawn from the environment"
             return f"no completed penetration; the handle's work on the environment is {1e3 * self.W[-1]:.4g} mJ, and {drawn}"
         about = "" if self.exact else ", the position at the force's changes interpolated"
         verb = "generated" if self.generated >= 0 else "dissipated"
@@ -113,8 +113,8 @@ def energy(log: Telemetry) -> Energy:
     check_record(log, "energy")
     if log.every > 1:
         raise AnalysisError(
-            f"energy: the record holds one sample in {log.every}, and the force between them is not known; "
-            "needs every sample: run with every=1, fewer watched channels or a longer T"
+            f"energy: the record contains one sample in {log.every}, and the force between these samples is not known. The "
+            "energy needs every sample. Run with every=1, fewer watched channels or a longer T"
         )
     x = np.asarray(log.channels.get("x_true", log.x), float)
     if len(x) < 2:
@@ -124,7 +124,7 @@ def energy(log: Telemetry) -> Energy:
     if held is None:
         held = np.r_[np.zeros(whole), log.F][: len(x)]
     if not (np.isfinite(x).all() and np.isfinite(held).all()):
-        raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
+        raise AnalysisError(f"the record contains values that are not finite; fault: {log.fault or 'none recorded'}")
     exact = True
     if fraction:
         exact = "x_switch" in log.channels

@@ -89,8 +89,8 @@ def energy_books(
     """
     if not scene.coordinates:
         raise AnalysisError(
-            f"{scene.name} has no equations of motion, so nothing in it can store or leak energy between samples; what the "
-            "port exchanges is hl.energy(log)"
+            f"{scene.name} has no equations of motion, so nothing in it can store or leak energy between samples. For the "
+            "energy exchanged at the port use hl.energy(log)"
         )
     account = _of_mechanics(scene) if stored is None else _written_out(scene, stored, supplied, dissipated)
     for element in contacts:
@@ -138,7 +138,7 @@ class _Account:
         books = dict(zip(CHANNELS, (supplied, self.stored, dissipated, supplied - self.stored - dissipated), strict=True))
         twice = sorted(set(books) & set(scene.watch))
         if twice:
-            raise SceneError(f"{scene.name} watches {', '.join(twice)} already, which the energy books record; rename it")
+            raise SceneError(f"{scene.name} already watches {', '.join(twice)}, a name that the energy books need; rename yours")
         eom = [*scene.eom, sp.Eq(put_in.diff(t), self.supplied), sp.Eq(taken.diff(t), self.dissipated)]
         return replace(scene, eom=tuple(eom), watch={**scene.watch, **books}, name=f"{scene.name} with energy books")
 
@@ -149,7 +149,7 @@ def _of_mechanics(scene):
     covered = {q for model in models for q in model.coordinates}
     bare = [type(q).__name__ for q in scene.coordinates if q not in covered]
     if bare or any(model.lagrangian is None for model in models):
-        named = f"the equation of {', '.join(bare)} tells" if bare else "equations that came without a Lagrangian tell"
+        named = f"the equation of {', '.join(bare)} gives" if bare else "equations that came without a Lagrangian give"
         raise AnalysisError(f"{scene.name}: {named} no energy; give stored=, supplied= and dissipated=")
     account = _Account(sp.S.Zero, sp.S.Zero, sp.S.Zero)
     for model in models:
@@ -164,8 +164,8 @@ def _with_model(account, model, scene):
     driving = next((g for g in model.constraints if g.has(x(t), v(t)) or Partial(g, t).doit() != 0), None)
     if driving is not None:
         raise AnalysisError(
-            f"{scene.name}: the constraint {driving} = 0 moves with the handle or with time, and its force does work that the "
-            "books do not see; give stored=, supplied= and dissipated="
+            f"{scene.name}: the constraint {driving} = 0 moves with the handle or with time, and its force does work that "
+            "the books do not contain. Give stored=, supplied= and dissipated="
         )
     rates = [q.diff(t) for q in model.coordinates]
     driven = Partial(L, x(t)) * v(t) + Partial(L, t)
@@ -185,8 +185,8 @@ def _written_out(scene, stored, supplied, dissipated):
         samples = [f for f in scene.force.atoms(sp.Function) if getattr(type(f), "role", None) in ("handle", "signal")]
         if any(lag_of(f) is not None for f in samples):
             raise AnalysisError(
-                f"{scene.name}: its force holds samples, so what it puts into the equations of motion is not known between "
-                "them; give supplied=, a power in x(t) and v(t)"
+                f"{scene.name}: its force contains samples, so the power that it supplies to the equations of motion is not "
+                "known between them. Give supplied=, a power in x(t) and v(t)"
             )
         supplied = scene.force * v(t)
     return _Account(sp.sympify(stored), sp.sympify(supplied), sp.sympify(dissipated))
@@ -228,8 +228,8 @@ class Balance(ShowsItself):
         return (
             f"supplied {1e3 * put_in:.4g} mJ = stored {1e3 * kept:.4g} + dissipated {1e3 * lost:.4g} "
             f"+ leak {1e3 * self.leak[-1]:.2g} mJ ({1e3 * worst:.2g} mJ at worst); "
-            f"the port gave {1e3 * self.port[-1]:.4g} mJ, which differs by {1e3 * self.sampling[-1]:.2g} mJ: what holding "
-            "the force, felt impulses and other forces do"
+            f"the port gave {1e3 * self.port[-1]:.4g} mJ, which differs by {1e3 * self.sampling[-1]:.2g} mJ, the effect of "
+            "the hold, of felt impulses and of other forces"
         )
 
 
@@ -266,7 +266,7 @@ def balance(log: Telemetry) -> Balance:
     missing = [name for name in CHANNELS if name not in log.channels]
     if missing:
         raise AnalysisError(
-            f"balance: the record has no {', '.join(missing)}; run hl.records.energy_books(scene), which watches them, "
+            f"balance: the record has no {', '.join(missing)}. Run hl.records.energy_books(scene), which watches them, "
             "instead of the scene alone"
         )
     kept = {name: np.asarray(log.channels[name], float) for name in CHANNELS}

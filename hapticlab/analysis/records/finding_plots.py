@@ -22,13 +22,13 @@ def plot_chatter(found):
     """
     log = found.record
     if log is None:
-        raise AnalysisError("this Chatter holds no record; take the one that hl.chatter(log) returns")
+        raise AnalysisError("this Chatter contains no record; use the one that hl.chatter(log) returns")
     t, x = np.asarray(log.t), 1e3 * np.asarray(log.channels.get("x_true", log.x), float)
     half = len(t) // 2
     with house_style():
         figure = new_figure(height=5.4)
         above, below = figure.subplots(2, 1, height_ratios=(3, 2))
-        above.axvspan(t[-half], t[-1], color="#e4e4e4", linewidth=0, label="looked at: the last half")
+        above.axvspan(t[-half], t[-1], color="#e4e4e4", linewidth=0, label="examined: the last half")
         above.plot(t, x, **STYLES[0], label="handle") if len(t) < 3000 else above.plot(t, x, "k-", lw=0.6, label="handle")
         if found.amplitude:
             middle = (x[-half:].max() + x[-half:].min()) / 2
@@ -72,10 +72,10 @@ def plot_energy(found):
     with house_style():
         figure = new_figure(height=3.8)
         axes = figure.subplots()
-        axes.plot(found.t, W, **STYLES[0], label="taken from the handle, less what was given back")
+        axes.plot(found.t, W, **STYLES[0], label="taken from the handle minus returned")
         axes.axhline(0.0, color="#4d4d4d", linewidth=0.8)
         if found.extracted > 0:
-            given = f"given beyond what was taken, {1e3 * found.extracted:.3g} mJ at most"
+            given = f"returned beyond the energy taken, at most {1e3 * found.extracted:.3g} mJ"
             axes.fill_between(found.t, W, 0, where=W < 0, facecolor="none", edgecolor=WARM, hatch="///", linewidth=0, label=given)
         axes.set(xlabel="time t [s]", ylabel="energy [mJ]")
         axes.set_title("\n".join(textwrap.wrap(str(found), 92)), fontsize="small")
@@ -106,7 +106,7 @@ def plot_balance(books):
         above.set_title("\n".join(textwrap.wrap(str(books), 96)), fontsize="small")
         above.legend(fontsize="small", **FRAME)
         below.plot(t, 1e3 * books.leak, **STYLES[0], label="leak: supplied, neither stored nor dissipated (the method)")
-        below.plot(t, 1e3 * books.sampling, **STYLES[1], label="given at the port, not supplied (sampling and hold)")
+        below.plot(t, 1e3 * books.sampling, **STYLES[1], label="returned at the port, not supplied (sampling and hold)")
         below.set(xlabel="time t [s]", ylabel="energy [mJ]")
         legend_above(below, 3)
     return figure

@@ -61,13 +61,13 @@ class PassivityTrace(ShowsItself):
 
     def __str__(self) -> str:
         least = int(np.argmin(self.W))
-        held = "held" if self.passive else f"broken by {-1e3 * self.W[least]:.4g} mJ at t = {self.t[least]:.4g} s"
+        held = "held" if self.passive else f"violated by {-1e3 * self.W[least]:.4g} mJ at t = {self.t[least]:.4g} s"
         lines = [f"W >= 0 {held}; {1e3 * self.W[-1]:.4g} mJ taken in the end"]
-        lines.append(f"at most {1e3 * self.drained:.4g} mJ drained, from t = {self.active[0]:.4g} s to {self.active[1]:.4g} s")
+        lines.append(f"at most {1e3 * self.drained:.4g} mJ drawn, from t = {self.active[0]:.4g} s to {self.active[1]:.4g} s")
         if self.error is not None:
-            lines.append(f"the observer was wrong by {1e3 * abs(self.error).max():.2g} mJ at most")
+            lines.append(f"the observer was wrong by at most {1e3 * abs(self.error).max():.2g} mJ")
         if self.dissipated is not None:
-            lines.append(f"the controller's damper took {1e3 * self.dissipated[-1]:.4g} mJ")
+            lines.append(f"the controller's damper dissipated {1e3 * self.dissipated[-1]:.4g} mJ")
         return "\n".join(lines)
 
     def plot(self) -> Figure:
@@ -82,9 +82,9 @@ class PassivityTrace(ShowsItself):
             if self.observed is not None:
                 axes.plot(self.t, 1e3 * self.observed, label="the observer's", **STYLES[1])
             if self.dissipated is not None:
-                axes.plot(self.t, 1e3 * self.dissipated, label="taken by the controller", **STYLES[2])
+                axes.plot(self.t, 1e3 * self.dissipated, label="dissipated by the controller", **STYLES[2])
             axes.set(xlabel="time t [s]", ylabel="energy [mJ]")
-            axes.set_title(f"grey: {1e3 * self.drained:.3g} mJ drained", fontsize="small")
+            axes.set_title(f"grey: {1e3 * self.drained:.3g} mJ drawn", fontsize="small")
             axes.legend(loc="best")
         return figure
 
@@ -108,9 +108,9 @@ def passivity_trace(log: Telemetry) -> PassivityTrace:
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
     >>> log = paddle.run(hl.laws.passivity_observer(hl.wall()(k=500)), duration=0.05, x=-0.002, v=0.2, progress=False)
     >>> print(hl.passivity.trace(log))
-    W >= 0 broken by 0.1595 mJ at t = 0.042 s; -0.1595 mJ taken in the end
-    at most 1.089 mJ drained, from t = 0.026 s to 0.042 s
-    the observer was wrong by ... mJ at most
+    W >= 0 violated by 0.1595 mJ at t = 0.042 s; -0.1595 mJ taken in the end
+    at most 1.089 mJ drawn, from t = 0.026 s to 0.042 s
+    the observer was wrong by at most ... mJ
     """
     check_record(log, "hl.passivity.trace")
     W = energy(log).W

@@ -104,7 +104,7 @@ def _draw_record(log, names, over="t", title="", alt="", **unknown):
         raise AnalysisError(f"plot of a record has no {next(iter(unknown))}=; it takes over=, title= and alt=")
     names = names or (("x", "F") if over == "t" else ("F",))
     if not all(isinstance(name, str) for name in (*names, over)):
-        raise AnalysisError(f'plot of {names}; needs names one by one, as in hl.plot(log, "x", "F")')
+        raise AnalysisError(f'plot of {names}; needs separate names, as in hl.plot(log, "x", "F")')
     missing = [name for name in (*names, over) if name not in log.columns]
     if missing:
         recorded = ", ".join(log.columns)

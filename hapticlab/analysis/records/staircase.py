@@ -201,7 +201,7 @@ def _corners(log, x):
         return (np.r_[places, x[-1]], np.r_[forces, F[-1]]), F
     if "x_switch" not in log.channels:
         raise AnalysisError(
-            f"staircase: with a delay of {log.delay:g} s the force changes inside the periods, and the record does not say "
+            f"staircase: with a delay of {log.delay:g} s the force changes inside the periods, and the record does not show "
             "where; needs a record of a simulated paddle, or whole periods of delay"
         )
     switch, before = log.channels["x_switch"][:-1], np.r_[0.0, F[:-2]]

@@ -43,7 +43,7 @@ def plot_sweep(result: Sweep, *, limits: Limit | Sequence[Limit] | Mapping[str, 
         For more than two axes, and for limits where no axis is a stiffness.
     """
     if len(result.axes) not in (1, 2):
-        raise AnalysisError(f"the sweep has {len(result.axes)} axes; a plot shows 1 or 2: sweep fewer, or fix some values")
+        raise AnalysisError(f"the sweep has {len(result.axes)} axes; a plot shows 1 or 2. Sweep fewer, or fix some values")
     with house_style():
         figure = new_figure(height=4.2)
         axes = figure.subplots()
@@ -101,7 +101,7 @@ def _draw_limits(axes, result, shown, limits):
         return
     stiff = [name for name in shown if name and result.units.get(name) == "N/m"]
     if not stiff:
-        raise AnalysisError("limits are stiffnesses; needs an axis in N/m, such as k")
+        raise AnalysisError("limits are stiffnesses, so a plot of them needs an axis in N/m, such as k")
     on_map, upright = shown[1] is not None, stiff[0] == shown[0]
     for number, (text, limit) in enumerate(limits.items()):
         style = {"color": "#4d4d4d", "linestyle": LIMIT_DASHES[number % 3], "linewidth": 2.2}

@@ -28,7 +28,7 @@ def plot_step_limit(limit):
         for mode, style in zip(limit.modes, itertools.cycle(STYLES)):
             with np.errstate(all="ignore"):
                 axes.plot(1e3 * steps, _radius(mode.step(steps)), label=f"{mode.mode}; {mode.point}", **style)
-        axes.axvline(1e3 * limit.h, color="#8a8a8a", label="the step taken")
+        axes.axvline(1e3 * limit.h, color="#8a8a8a", label="the step used")
         axes.set(xscale="log", ylim=(0.0, 2.0), xlabel="step h [ms]", ylabel="largest |eigenvalue| of a step")
         forbid(axes, 1.0, "above 1: the step is unstable")
         axes.set_title(f"{limit.scene}, {limit.method}", fontsize="small")

@@ -13,7 +13,7 @@ from .switch_states import Places
 WORTH = {
     "linear": "linear: exact",
     "piecewise linear": "piecewise linear: exact within each mode",
-    "small-signal": "of small motions about these points",
+    "small-signal": "for small motions about these points",
 }
 #: places beside the start within declared ranges
 _WITHIN = 6
@@ -142,7 +142,7 @@ def _given(places, at):
     for one in [at] if isinstance(at, dict) else at:
         strangers = set(one) - set(places.names)
         if strangers:
-            raise AnalysisError(f"at: {', '.join(sorted(strangers))} is no state; there are {', '.join(places.names)}")
+            raise AnalysisError(f"at: {', '.join(sorted(strangers))} is not a state; the states are {', '.join(places.names)}")
         p = np.array([float(one.get(name, start)) for name, start in zip(places.names, places.start, strict=True)])
         found.append((", ".join(f"{name} = {value:g}" for name, value in one.items()) or "the start", p))
     return found

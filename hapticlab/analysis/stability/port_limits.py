@@ -81,7 +81,9 @@ class Looked:
             p = self.points[k]
             mode = self.known.named(p.mode)
             if not whole[k]:
-                raise AnalysisError(f"the force has no finite slope at {p.words}, {mode}; name places where it has, at={{...}}")
+                raise AnalysisError(
+                    f"the force has no finite slope at {p.words}, {mode}. Give positions where it has one, at={{...}}"
+                )
             caught = not stiff[k] < 0 or self._is_caught(k, stiff, forces[:P], kind)
             tells = (ticks[k], self.slopes[k], T, delay, handle, frequencies)
             found[k] = PortLimit(mode, p.words, *_asked(*tells, stiff[k], caught), ticks[k], float(stiff[k]))
@@ -138,7 +140,7 @@ class Looked:
             jump = high - low if by_x else abs(high - low)
             if jump > JUMP * max(abs(low), abs(high), 1.0):
                 words = f"{self.known.named(one.mode)} | {self.known.named(other.mode)}"
-                reason = f"the force jumps by {abs(high - low):.4g} N: no damping is enough for a slope without bound"
+                reason = f"the force jumps by {abs(high - low):.4g} N, so its slope has no bound and no damping is enough"
                 found.append(PortLimit(words, one.words, np.inf, np.inf, 0.0, reason, ticks[first + 2 * k]))
         return found
 
@@ -157,11 +159,11 @@ def _asked(tick, J, T, delay, handle, frequencies, stiffness, caught):
     if pole is not None:
         return np.inf, floor, 0.0, f"unstable with the handle held, a pole at {pole:.6g}"
     if falls and unstable_pole(A, B, C) is not None:
-        return np.nan, floor, 0.0, "falls by itself: no motion near it is passive"
+        return np.nan, floor, 0.0, "moves away by itself, so no motion near it is passive"
     if not caught:
         return np.nan, floor, 0.0, negative(stiffness)
     b_req, theta = required(A, B, C, D, T, delay, frequencies)
     reason = "a resonance without damping" if np.isinf(b_req) else WORST
     if stiffness < 0:
-        reason = f"locally active, {stiffness:.4g} N/m: a free handle moves on to where it is stiff"
+        reason = f"locally active, {stiffness:.4g} N/m: a free handle moves away to where the scene is stiff"
     return b_req, floor, theta / (2 * np.pi * T), reason

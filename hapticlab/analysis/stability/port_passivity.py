@@ -123,7 +123,7 @@ class PortPassivity(Tabular):
             reason = "" if m.reason == WORST else f" ({m.reason})"
             lines.append(f"  {m.b_req:10.4g} {m.floor:8.4g} {m.frequency:8.4g}  {m.mode}; {m.point}{reason}")
         if self.passive and self.kind != "linear":
-            lines.append(f"  not covered: {BEYOND[self.kind]}. hl.passivity.worst_motion(paddle, scene) searches them.")
+            lines.append(f"  not covered: {BEYOND[self.kind]}. hl.passivity.worst_motion(paddle, scene) searches these motions.")
         return "\n".join(lines)
 
     def plot(self) -> Figure:

@@ -155,7 +155,10 @@ class StepLimit(Tabular):
         lines = [f"{head}, margin {self.margin:.3g} ({worth}{looked if self.small_signal else ''})"]
         if self.held is not None:
             grows = "grows" if self.held > 1 + GROWS else "does not grow"
-            lines.append(f"  h_max leaves out what is held from sample to sample; a tick of T = {1e3 * self.T:g} ms {grows}")
+            lines.append(
+                "  h_max does not account for values that are held from sample to sample; a tick of T = "
+                f"{1e3 * self.T:g} ms {grows}"
+            )
         lines.append(f"  {'h_max [ms]':>10} {'margin':>8} {'gain/step':>10} {'steps/contact':>13}  mode; where")
         for m in self.modes:
             where = m.mode if m.point in m.mode else f"{m.mode}; {m.point}"
@@ -275,7 +278,7 @@ def _step_at(scene, point, method, T, J, seconds):
 def _mode_limit(method, J, step, h, mode, point, quick=False):
     """Return the :class:`ModeLimit` of one point, from its step matrices; ``quick``, to a thousandth."""
     if not np.isfinite(J).all():
-        raise AnalysisError(f"the motion has no finite slope at {point}, {mode}; name places where it has, at={{...}}")
+        raise AnalysisError(f"the motion has no finite slope at {point}, {mode}. Give positions where it has one, at={{...}}")
     values = np.linalg.eigvals(J)
     largest, fastest = np.abs(values).max(initial=0.0), np.abs(values.imag).max(initial=0.0)
     if method.locates and method.rest:

@@ -141,8 +141,8 @@ class WorstMotion(ShowsItself):
         instance("paddle", paddle, SimulatedPaddle, "an hl.SimulatedPaddle(...)", error=AnalysisError)
         if len(self.x) < len(self.positions):
             raise AnalysisError(
-                "the delay has a fraction of a period, and the motion turns where the force changes, between samples. A "
-                "simulated hand turns at samples. Search with a delay of whole periods."
+                "the delay has a fraction of a period, so the worst motion reverses between samples, where the force "
+                "changes, but a simulated hand reverses at samples. Search with a delay of whole periods."
             )
         k = paddle.m / (STIFF * paddle.T) ** 2
         with warnings.catch_warnings():
@@ -190,7 +190,7 @@ class WorstMotion(ShowsItself):
             f"{head} draws {each}{lost}",
             "  x at the samples [mm]: " + ", ".join(f"{1e3 * x:.4g}" for x in self.x[:SHOWN]) + ", ..." * (len(self.x) > SHOWN),
             f"  motions were found that draw energy from a device of less than b = {self.b_req:.4g} N s/m{has}",
-            f"  searched: {self.searched}. A search proves no passivity.",
+            f"  searched: {self.searched}. A search cannot prove passivity.",
         ])  # fmt: skip
 
     def plot(self) -> Figure:
@@ -270,7 +270,10 @@ def worst_motion(
     surfaces = _surfaces(scene, T)
     places = _places(gains, surfaces, reach) if about is None else [number("about", x, "m", "a motion") for x in np.ravel(about)]
     if not places:
-        raise AnalysisError(f"about = {about!r}; a search needs one place at least, as about=0, or none given to find its own")
+        raise AnalysisError(
+            f"about = {about!r}; a search needs at least one position, such as about=0. Leave out about= to "
+            "use the rest positions that are found"
+        )
     most, share = int(np.clip(CALL / gains.motions.work, 100, MOST)), WORK / (2 * len(places))
     needing, powerful, tried = [], [], 0
     for place in places:
@@ -285,8 +288,8 @@ def worst_motion(
     x, b_req = _shortest(needing, gains.damping)
     if not np.isfinite(b_req):
         raise AnalysisError(
-            f"{scene.name}: of {tried} closed motions none had a force that repeats itself from cycle to cycle. Search about a "
-            "place where the scene has a rest, about=..., or within a smaller reach."
+            f"{scene.name}: of {tried} closed motions none had a force that repeats from cycle to cycle. Search about a "
+            "position where the scene is at rest, about=..., or within a smaller reach."
         )
     if b is not None and b_req > b:
         x, _ = _shortest(powerful, gains.power)
@@ -295,7 +298,7 @@ def worst_motion(
     longest = max(len(x) for x in needing) // len(gains.motions.durations)
     searched = f"{tried} closed motions of 2 to {longest} samples within {1e3 * reach:g} mm of x = {at} mm, seed {seed}"
     if gains.motions.adrift:
-        searched += f"; left out are {gains.motions.adrift} whose force does not repeat itself from cycle to cycle"
+        searched += f"; {gains.motions.adrift} motions are left out because their force does not repeat from cycle to cycle"
     return WorstMotion(
         scene.name, x, books.held[:, 0], np.resize(gains.motions.durations, len(x)), float(books.drawn[0]),
         float(books.viscous[0]), coulomb * float(books.path[0]), b_req, b, searched, program,

@@ -175,8 +175,8 @@ def _in_one_period(paddle, columns):
         return {name: a for name, a in columns.items() if name != "T"}
     if _has_inputs(paddle):
         raise AnalysisError(
-            "T is an axis and the hand moves or there is noise: its samples differ from T to T. Use a resting hand without "
-            "noise, or hl.sweep"
+            "T is an axis, and the hand moves or there is noise, so its samples differ from one T to the next. Use a "
+            "resting hand without noise, or hl.sweep"
         )
     ratio = paddle.T / columns["T"]
     new = {name: a for name, a in columns.items() if name != "T"}

@@ -239,7 +239,7 @@ def _filled(plan, what, workers, resume, progress):
                     shown.update(more)
         except BaseException as stop:
             if resume is not None and (done > before or isinstance(stop, KeyboardInterrupt)):
-                stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call goes on from there")
+                stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call continues from there")
             raise
     if plan.missed:
         warn_at_own_line(
@@ -248,7 +248,7 @@ def _filled(plan, what, workers, resume, progress):
             MissedEventWarning,
         )
     if done != points:
-        raise AnalysisError(f"workers gave back {done} of {points} points; needs a map that returns every result once")
+        raise AnalysisError(f"the workers returned {done} of {points} points; needs a map that returns every result once")
     return result
 
 
@@ -257,7 +257,7 @@ def _names(scene, paddle, values):
     if not isinstance(scene, Scene):
         what = getattr(scene, "name", repr(scene))
         swapped = "; the scene comes first: hl.sweep(scene, paddle, ...)" if isinstance(paddle, Scene) else ""
-        raise AnalysisError(f"{what} is no scene; a sweep compiles one for every T and needs a Scene{swapped}")
+        raise AnalysisError(f"{what} is not a scene; a sweep compiles a scene for every T, so it needs a Scene{swapped}")
     own = {name: str(p.unit) for name, p in scene.parameters.items()}
     known = {**START_AXES, **PADDLE_AXES, **own}
     axes, fixed = {}, {}
@@ -265,7 +265,8 @@ def _names(scene, paddle, values):
         if name not in known:
             listed = ", ".join(own) or "none"
             raise AnalysisError(
-                f"{name}: nothing has that name. The scene's parameters: {listed}; the paddle's: {', '.join(PADDLE_AXES)}; "
+                f"{name} is not a quantity that can be swept. The scene's parameters: {listed}; the paddle's: "
+                f"{', '.join(PADDLE_AXES)}; "
                 f"the start: {', '.join(START_AXES)}"
             )
         if name in own and name in {**PADDLE_AXES, **START_AXES}:

@@ -53,7 +53,7 @@ class Partial:
         try:
             self.path = Path(path)
         except TypeError:
-            raise AnalysisError(f"resume = {path!r}; needs the path of a file, which is made where there is none") from None
+            raise AnalysisError(f"resume = {path!r}; needs the path of a file, which is made if it does not exist") from None
         line = MAGIC + json.dumps(identity).encode() + b"\n"
         with self._named("open"):
             self._file = open(self.path, "a+b", buffering=0)  # noqa: SIM115 (closed where the block ends)
@@ -80,7 +80,7 @@ class Partial:
             return 0
         head, _, _ = content.partition(b"\n")
         if not head.startswith(MAGIC):
-            raise AnalysisError(f"resume = {str(self.path)!r} is no file of a sweep; name another one, it is made")
+            raise AnalysisError(f"resume = {str(self.path)!r} is not the file of a sweep; give the path of a new file")
         self._compare(head, identity)
         at = len(head) + 1
         while (record := _record(content, at)) is not None:
@@ -97,7 +97,7 @@ class Partial:
         if names:
             differ = "; ".join(f"{name}: {there.get(name, 'none')} there, {identity.get(name, 'none')} here" for name in names)
             raise AnalysisError(
-                f"resume = {str(self.path)!r} holds another sweep ({differ}). Name another file, or delete this one"
+                f"resume = {str(self.path)!r} contains a different sweep ({differ}). Give a different file, or delete this one"
             )
 
     def add(self, record):

@@ -74,13 +74,17 @@ class Plan:
             group, first, values, missed = given
             count, values, missed = self.sent.get((group, first)), np.asarray(values, float), int(missed)
         except (TypeError, ValueError):
-            raise AnalysisError(f"workers gave back {_shown(given)}; needs a map that returns what the function does") from None
+            raise AnalysisError(
+                f"the workers returned {_shown(given)}; needs a map that returns the results of the function"
+            ) from None
         if count is None:
-            raise AnalysisError("workers gave back a chunk twice, or one they did not get; needs a map that returns each once")
+            raise AnalysisError(
+                "the workers returned a chunk twice, or one that they were not given; needs a map that returns each chunk once"
+            )
         if values.shape != (count,):
             raise AnalysisError(
-                f"workers gave back an array of shape {values.shape} for a chunk of {count} points; needs a map that returns "
-                "what the function does"
+                f"the workers returned an array of shape {values.shape} for a chunk of {count} points; needs a map that "
+                "returns the results of the function"
             )
         del self.sent[group, first]
         self.missed += missed
@@ -99,8 +103,8 @@ class Plan:
 
     def _other(self):
         return AnalysisError(
-            f"the file to resume from is of another sweep: {self.scene.name}, its values, the paddle or its hand are not what "
-            "they were. Name another file, or delete this one"
+            f"the file to resume from belongs to a different sweep: {self.scene.name}, its values, the paddle or its hand "
+            "have changed. Give a different file, or delete this one"
         )
 
     def _program(self, points):
@@ -112,7 +116,7 @@ class Plan:
             if not names:
                 raise
             raise ProgramError(
-                f"method='exact' makes constants of the motion, and {names} in it may be no axis of the sweep: use "
+                f"method='exact' computes constants for the motion, so {names} in it cannot be an axis of the sweep. Use "
                 "method='taylor', or one call for each value"
             ) from error
         for channel in program.parameters:  # a program may take less than a scene

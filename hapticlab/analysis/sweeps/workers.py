@@ -72,18 +72,18 @@ def _mapped(function, pieces, workers):
         while batch := [*itertools.islice(pieces, size)]:
             results, size = workers(function, batch), min(2 * size, LARGEST_BATCH)
             if not isinstance(results, Iterable):
-                raise AnalysisError(f"workers gave back {results!r}; needs a map that gives back all results, one by one")
+                raise AnalysisError(f"the workers returned {results!r}; needs a map that returns all results, one by one")
             for result in results:
                 if callable(getattr(result, "result", None)):
                     raise AnalysisError(
-                        f"workers gave back {result!r}; needs a map that returns results, not promises of them. Of a Dask client "
-                        "that is workers=client.get_executor().map"
+                        f"the workers returned {result!r}; needs a map that returns results, not futures. For a Dask client "
+                        "give workers=client.get_executor().map"
                     )
                 yield result
     except BrokenExecutor as error:
         raise AnalysisError(
-            "a worker of the pool given as workers was killed, and such a pool ends with it; make a new one and sweep again, "
-            "with resume= from what was finished"
+            "a worker of the pool given as workers was killed, which ends the pool. Make a new pool and sweep again, with "
+            "resume= to keep the finished points"
         ) from error
 
 
@@ -132,9 +132,9 @@ def _in_processes(function, pieces, workers):
         finally:
             pool.shutdown(cancel_futures=True)
     raise AnalysisError(
-        f"the worker processes died {MOST_BREAKS} times in a row, and none had finished anything. If this is a script, each of "
-        "them runs it again: put what it does under if __name__ == '__main__':. Else they were killed, for want of memory "
-        "perhaps: take fewer workers"
+        f"the worker processes ended {MOST_BREAKS} times in a row before they finished any point. If this is a script, each "
+        "worker runs it again: put its statements under if __name__ == '__main__':. Otherwise the workers were killed, "
+        "perhaps for lack of memory: use fewer workers"
     )
 
 
@@ -146,8 +146,8 @@ def _sendable(pieces):
                 pickle.dumps(piece)
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             raise AnalysisError(
-                f"this cannot be sent to worker processes: {error}. A function in it, such as a hand's intent, is best "
-                "defined with def in a module that is imported; or sweep with workers=1"
+                f"this cannot be sent to worker processes: {error}. Define its functions, such as a hand's intent, with def "
+                "in a module that is imported, or sweep with workers=1"
             ) from error
         yield piece
 

@@ -87,7 +87,7 @@ class LawComparison(Tabular):
         """Return the bounce of a law by name."""
         found = {bounce.law: bounce for bounce in self.bounces}
         if law not in found:
-            raise AnalysisError(f"no bounce of {law!r}; there are {', '.join(found)}")
+            raise AnalysisError(f"there is no bounce of {law!r}; there are {', '.join(found)}")
         return found[law]
 
     def __str__(self) -> str:
@@ -100,7 +100,7 @@ class LawComparison(Tabular):
             f"{b.spread:>8.4f} {b.path:>8.2%} {b.pull:>6.3g} N"
             for b in self.bounces
         ]
-        return "\n".join([head, *rows, *(f"{law:<20} refused: {why}" for law, why in self.refused.items())])
+        return "\n".join([head, *rows, *(f"{law:<20} rejected: {why}" for law, why in self.refused.items())])
 
     def plot(self) -> Figure:
         """Draw, law by law, the energy generated and how far the path is from the wall's own."""
@@ -114,13 +114,13 @@ class LawComparison(Tabular):
             left.barh(places, 100 * shares, color=COLD, height=0.6, label="mean of the entries")
             left.plot(100 * worst, places, "k|", markersize=13, markeredgewidth=2, label="worst entry")
             left.axvline(0, color="black", linewidth=0.8)
-            left.set(xlabel="energy generated [% of what came in]", yticks=places, yticklabels=names)
+            left.set(xlabel="energy generated [% of the incoming energy]", yticks=places, yticklabels=names)
             left.invert_yaxis()
             left.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize="small")
             strays = np.array([100 * max(b.path, 1e-6) for b in self.bounces])  # no foot: a log scale
             right.plot(strays, places, "o", color=WARM)
             plain_log(right, "x")
-            right.set(xlabel="stray from the wall's path [% of depth]", xlim=(strays.min() / 2, 2 * strays.max()))
+            right.set(xlabel="deviation from the wall's path [% of depth]", xlim=(strays.min() / 2, 2 * strays.max()))
         return figure
 
 

@@ -78,11 +78,11 @@ class LawLimits(Tabular):
         """Return the limit of a law by name."""
         found = {limit.law: limit for limit in self.limits}
         if law not in found:
-            raise AnalysisError(f"no limit of {law!r}; there are {', '.join(found)}")
+            raise AnalysisError(f"there is no limit of {law!r}; there are {', '.join(found)}")
         return found[law]
 
     def __str__(self) -> str:
-        head = f"walls that stand under a push of {self.push:g} N, an outcome of one start: {self.duration:g} s from the boundary"
+        head = f"stable walls under a push of {self.push:g} N, simulated from one start: {self.duration:g} s from the boundary"
         rows = [
             f"{m.law:<20} {m.why}" if math.isnan(m.K) else f"{m.law:<20} {m.K:>9.4g} N/m   beyond: {m.why}" for m in self.limits
         ]
@@ -164,19 +164,19 @@ def _check(paddle, laws, push, first, most, duration):
         raise AnalysisError(f"law_limits: laws = {unknown or laws}; needs one or more of {', '.join(LAWS)}")
     if paddle.force_max is not None and push >= paddle.force_max:
         raise AnalysisError(
-            f"law_limits: push = {push:g} N, and the motor gives no more than force_max = {paddle.force_max:g} N: no wall "
-            "holds it. Push less"
+            f"law_limits: push = {push:g} N, but the motor gives at most force_max = {paddle.force_max:g} N, so no wall can "
+            "resist the push. Give a smaller push"
         )
     if duration / paddle.T < SHORTEST:
         raise AnalysisError(
-            f"law_limits: duration = {duration:g} s is {duration / paddle.T:.3g} samples; needs {SHORTEST} at least"
+            f"law_limits: duration = {duration:g} s is {duration / paddle.T:.3g} samples; needs at least {SHORTEST}"
         )
     if not 0 < first <= most < math.inf:
         raise AnalysisError(f"law_limits: first = {first} N/m, most = {most} N/m; needs 0 < first <= most, both finite")
 
 
 def _limit(name, paddle, first, most, push, duration, options):
-    stood, beyond, why, rest = 0.0, math.inf, "nothing stiffer was tried", np.nan
+    stood, beyond, why, rest = 0.0, math.inf, "no stiffer wall was tried", np.nan
     K, longer = first, 1.0
     while K <= most and (beyond == math.inf or beyond / max(stood, 1e-9) > FINEST):
         trial = _trial(name, paddle, K, push, duration * longer, options)
@@ -184,7 +184,9 @@ def _limit(name, paddle, first, most, push, duration, options):
             longer = min(2 * longer, LONGEST)
             continue
         if trial.undecided and stood == 0:
-            return LawLimit(name, math.nan, math.nan, f"{K:g} N/m {trial.fault}: it neither dies out nor grows", np.nan)
+            return LawLimit(
+                name, math.nan, math.nan, f"{K:g} N/m {trial.fault}: the oscillation neither dies out nor grows", np.nan
+            )
         if trial.fault is None:
             stood, rest = K, trial.felt
         else:

@@ -30,7 +30,7 @@ class ChapterLimits:
     def __init__(self, law, bounds):
         wrong = [name for name in bounds if name not in BOUNDS]
         if wrong:
-            raise AnalysisError(f"bounds = {bounds}; {wrong[0]} is none of {', '.join(BOUNDS)}")
+            raise AnalysisError(f"bounds = {bounds}; {wrong[0]} is not one of {', '.join(BOUNDS)}")
         self.law, self.bounds, self.name = law, tuple(bounds), f"law {law}"
 
     def at(self, paddle, B):

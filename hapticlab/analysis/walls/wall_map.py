@@ -118,7 +118,7 @@ class WallMaps:
     ):  # fmt: skip
         self._check(paddle, over, unusable)
         if not (isinstance(points, int) and points >= 2):
-            raise AnalysisError(f"points = {points!r}; an axis of a map needs two or more points, a whole number")
+            raise AnalysisError(f"points = {points!r}; an axis of a map needs a whole number of points, 2 or more")
         self.over, self.T, self.start, self.unusable = tuple(over), paddle.T, _start(x, v), float(unusable)
         self.parameter = parameter if isinstance(law, Scene) else "k"
         if isinstance(law, Scene):
@@ -144,7 +144,7 @@ class WallMaps:
         """Return the WallMap of a paddle."""
         self._check(paddle, self.over, self.unusable)
         if paddle.T != self.T and isinstance(self.limits, SceneLimits):
-            raise AnalysisError(f"T = {paddle.T:g} s; the maps of this scene are made for {self.T:g} s: make new ones")
+            raise AnalysisError(f"T = {paddle.T:g} s, but the maps of this scene are made for {self.T:g} s. Make new ones")
         begun = time.perf_counter()
         K, other = self.axes.values()
         limits = self._limits(paddle, self.rows)
@@ -198,7 +198,7 @@ class WallMaps:
         except (TypeError, ValueError):
             array = np.array([])
         if array.ndim != 1 or len(array) < 2 or not np.isfinite(array).all() or (np.diff(array) <= 0).any():
-            raise AnalysisError(f"{name} = {given}; an axis of a map needs two or more finite numbers that rise")
+            raise AnalysisError(f"{name} = {given}; an axis of a map needs two or more finite numbers in rising order")
         if name == "K" and array[0] < 0:
             raise AnalysisError(f"K = {array[0]:g} N/m; a wall needs K >= 0")
         return array
@@ -209,30 +209,34 @@ class WallMaps:
         if len(over) != 2 or over[0] != "K" or over[1] not in OTHERS:
             raise AnalysisError(f'over = {over}; needs ("K", other) with other one of {", ".join(OTHERS)}')
         if over[1].startswith("hand_") and paddle.hand is None:
-            raise AnalysisError(f"over = {over}; the paddle has no hand: hand=hl.Hand(push=1.0)")
+            raise AnalysisError(f"over = {over}; the paddle has no hand. Give it one: hand=hl.Hand(push=1.0)")
         if over[1] == "counts_per_metre" and paddle.counts_per_metre is None:
-            raise AnalysisError(f"over = {over}; the paddle has no encoder: counts_per_metre=2e4")
+            raise AnalysisError(f"over = {over}; the paddle has no encoder. Give it one: counts_per_metre=2e4")
         number("unusable", unusable, "m", above=0, what="an amplitude")
 
     def _check_scene(self, scene):
         """Refuse a scene that cannot be mapped: without the parameters of the axes, or over T, on which its times depend."""
         if self.over[1] == "T":
-            raise AnalysisError(f'over = {self.over}; a map over T is for the laws by name, as law="ellis"; else use hl.sweep')
+            raise AnalysisError(
+                f'over = {self.over}; a map over T needs a law by name, such as law="ellis". For a scene use hl.sweep'
+            )
         if self.over[1] != "B" and self.over[1] in scene.parameters:
             raise AnalysisError(f"{self.over[1]} is a parameter of {scene.name} and of the paddle; rename the scene's")
         for name in (self.parameter, *(["B"] if self.over[1] == "B" else [])):
             if name not in scene.parameters:
                 known = ", ".join(scene.parameters) or "none"
-                raise AnalysisError(f"{scene.name} has no parameter {name}; it has {known}: parameter= names its stiffness")
+                raise AnalysisError(f"{scene.name} has no parameter {name}; it has {known}. Name its stiffness with parameter=")
             if name in scene.values and math.isnan(scene.parameters[name].value):
-                raise AnalysisError(f"{scene.name} has {name} = {scene.values[name]:g}, and the map is over it: leave it unbound")
+                raise AnalysisError(
+                    f"{scene.name} has {name} = {scene.values[name]:g}, but the map is over {name}. Leave it unbound"
+                )
 
     def _about(self, paddle):
         B = f", B = {self.B:g} N s/m" if self.B else ""
         x, v = self.start
         ends = ""
         if self.ranged and getattr(self.limits, "linear", True) is None:
-            ends = "\nK ends at twice the softest wall found that does not come to rest; K=... for another range"
+            ends = "\nK ends at twice the softest wall found that does not come to rest; give K=... for a different range"
         return f"{self.limits.name}{B}; a contact begins at {1e3 * x:g} mm with {v:g} m/s{ends}\n{paddle}"
 
 
@@ -252,7 +256,9 @@ def _check_names(axes, over):
         options = [option for option in inspect.signature(WallMaps).parameters if option not in ("paddle", "axes")]
         near = get_close_matches(name, [*over, *options], 1) or [one for one in over if one.lower() == name.lower()]
         mean = f"; did you mean {near[0]}?" if near else ""
-        raise AnalysisError(f"{name} is none of the axes {', '.join(over)} and the options {', '.join(options)}{mean}")
+        raise AnalysisError(
+            f"{name} is neither one of the axes {', '.join(over)} nor one of the options {', '.join(options)}{mean}"
+        )
 
 
 def changed(paddle, name, value):

@@ -92,7 +92,7 @@ def _name_regions(axes, found, every):
     """Put the colours of the regions into the legend."""
     passive = "passive, the spring always acting" if found.inside_only else "passive"
     stable = "stable, not passive" if "passivity" in found.limits else "stable"
-    names = (passive, stable, "chatters", f"unusable: swings over {1e3 * found.unusable:g} mm")
+    names = (passive, stable, "chatters", f"unusable: oscillates by more than {1e3 * found.unusable:g} mm")
     patch = {"marker": "s", "linestyle": "none", "markersize": 11, "markeredgecolor": "#808080"}
     for number, (colour, name) in enumerate(zip(COLOURS, names, strict=True)):
         if every or (found.regions == number).any():

@@ -76,7 +76,7 @@ class WallMap(ShowsItself):
     def limit(self, name: str) -> Array:
         """Return the stiffnesses [N/m] of a limit at ``rows``; nan where a bound's assumptions fail."""
         if name not in self.limits:
-            raise AnalysisError(f"no limit {name} here; the map has {', '.join(self.limits)}")
+            raise AnalysisError(f"there is no limit {name} here; the map has {', '.join(self.limits)}")
         return np.array([math.nan if one is None else one.K for one in self.limits[name]])
 
     def share(self, region: Region) -> float:
@@ -127,29 +127,29 @@ class WallMap(ShowsItself):
         (K, k), (other, a) = self.axes.items()
         known = "passivity" in self.limits
         shares = ", ".join(f"{name} {100 * self.share(name):.1f} %" for name in REGIONS[0 if known else 1 :])
-        shares += "" if known else '; passive: not known of a scene (law="zoh" and its like draw the theory too)'
+        shares += "" if known else '; passive: not known for a scene (laws by name, such as law="zoh", also show the theory)'
         lines = [
             f"wall map over {K} = {k[0]:g} to {k[-1]:g} N/m and {other} = {a[0]:g} to {a[-1]:g} {self.units[other]}: {shares}",
             f"  {self.about}".replace("\n", "\n  "),
-            f"  {self.regions.size} points of {self.duration:g} s; unusable is a swing of more than {1e3 * self.unusable:g} mm "
-            "to either side, or a handle thrown off by an unstable loop",
+            f"  {self.regions.size} points of {self.duration:g} s; unusable is an oscillation of more than "
+            f"{1e3 * self.unusable:g} mm to either side, or a handle thrown out by an unstable loop",
         ]
         if self.surprises.any():
             lines.append(
-                f"  {self.surprises.sum()} points within the passivity limit chatter: it is about device damping alone, not "
-                "about an encoder"
+                f"  {self.surprises.sum()} points within the passivity limit chatter; this limit accounts for device "
+                "damping only, not for an encoder"
             )
         if self.beyond_words:
             lines.append(f"  {self.beyond_words}")
         if self.undecided.any():
             judge = "by the linear theory" if "stability" in self.limits else "against the wall"
-            lines.append(f"  {self.undecided.sum()} points are decided {judge}: the handle does not come back in time")
+            lines.append(f"  {self.undecided.sum()} points are decided {judge}, because the handle does not come back in time")
         if "stability" not in self.limits:
             lines.append(
-                "  without linear= no theory is known of a scene: a swing that only gets smaller counts as coming to rest"
+                "  without linear= no theory is known for a scene, so a decaying oscillation is regarded as coming to rest"
             )
         if self.inside_only:
-            lines.append("  passivity is that of the spring always acting: switching at the boundary is not in it")
+            lines.append("  passivity assumes that the spring always acts; it does not account for switching at the boundary")
         return "\n".join(lines)
 
 

@@ -78,7 +78,7 @@ def _make_folder(folder):
     except OSError as error:
         raise EngineMissingError(
             f"the firmware's library is kept in {folder}, which cannot be written ({error.strerror}). Set XDG_CACHE_HOME to "
-            f"a folder of yours; {INSTEAD}"
+            f"a folder of your own; {INSTEAD}"
         ) from error
 
 

@@ -171,7 +171,7 @@ class _Content(pickle.Pickler):
             return tuple, ((type(obj), obj.__bases__, facts),)
         defined = isinstance(obj, (type, FunctionType, BuiltinFunctionType))
         if defined and str(obj.__module__).partition(".")[0] not in LASTING:
-            raise pickle.PicklingError(f"{obj!r} may be defined anew")
+            raise pickle.PicklingError(f"{obj!r} may be defined again")
         return NotImplemented
 
 

@@ -163,7 +163,7 @@ class Program(ShowsItself):
 
     def _sentence(self):
         method = self.facts.get("method")
-        return f"program {self.name}: {len(self)} instructions a tick, every {1e3 * self.T:g} ms" + (
+        return f"program {self.name}: {len(self)} instructions per tick, every {1e3 * self.T:g} ms" + (
             f", by {method}" if method else ""
         )
 
@@ -203,8 +203,8 @@ class Program(ShowsItself):
 
 
 def _stable(low=-math.inf, value=math.nan, high=math.inf):
-    """Between what a live parameter keeps the steps of a program stable, in words."""
-    least = f"from {short(low)} on" if high == math.inf else f"from {short(low)} "
+    """Return the range of a live parameter in which the steps of a program are stable, in words."""
+    least = f"above {short(low)}" if high == math.inf else f"from {short(low)} "
     most = "" if high == math.inf else f"up to {short(high)}"
     return "" if low == -math.inf and high == math.inf else f"Steps are stable {least if low > -math.inf else ''}{most}"
 

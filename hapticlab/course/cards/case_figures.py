@@ -151,21 +151,21 @@ def _across(one, size, unit):
 def _difference(lines, across, own):
     """Say in a sentence where two lines differ most; those with abscissae of their own are compared where one is expected."""
     if "got" not in lines:
-        return "Nothing came that can be drawn beside what is expected."
+        return "There is no answer that can be drawn next to the expected values."
     (x, expected), (x_got, got) = lines["expected"], lines["got"]
     odd = int((~np.isfinite(got)).sum())
-    told = f" {odd} of {len(got)} numbers that came are NaN or infinite; NaN leaves a gap." if odd else ""
+    told = f" {odd} of your {len(got)} numbers are NaN or infinite; NaN leaves a gap." if odd else ""
     if own and x_got.size and (np.diff(x_got) > 0).all():
         got = np.interp(x, x_got, got)
     if len(got) != len(expected):
-        return f"{len(got)} numbers came, {len(expected)} are expected.{told}"
+        return f"You gave {len(got)} numbers; {len(expected)} are expected.{told}"
     apart = np.nan_to_num(np.abs(got / 2 - expected / 2))
     if not apart.max() > 0:
-        return told.strip() or "All numbers are alike."
+        return told.strip() or "All numbers agree."
     k = int(apart.argmax())
     place = f"{across} {k}" if across in (SAMPLE, POINT) else _place(across.removeprefix("along "), x[k])
     came, wanted = pair(float(got[k]), float(expected[k]))
-    return f"The largest difference is at {place}: {came} came, {wanted} is expected.{told}"
+    return f"The largest difference is at {place}: yours is {came}, and {wanted} is expected.{told}"
 
 
 def _place(label, at):

@@ -59,7 +59,7 @@ class SignCheck:
     intervals: int
 
     def __str__(self):
-        seen = f"Z = {self.Z:+.1f} of {self.intervals} intervals (clear from {CLEAR} on), {self.work * 1e6:+.0f} uJ each"
+        seen = f"Z = {self.Z:+.1f} of {self.intervals} intervals (clear above {CLEAR}), {self.work * 1e6:+.0f} uJ each"
         words = {
             "right": "the motor pulls the handle in the right direction",
             "wrong": "the motor pushes the handle in the wrong direction: its two wires are swapped",

@@ -52,8 +52,8 @@ def answer_cells(folder, answers):
     lost = [place.exercise for place in found if place.answer is None or place.check is None]
     if lost:
         raise CourseError(
-            f"{folder.notebook.name}: {', '.join(lost)} has no cell of its own; each exercise needs one that answers it, and "
-            f'one that checks it by hl.check("{lab.number}.{lost[0]}", {lost[0]})'
+            f"{folder.notebook.name}: {', '.join(lost)} has no cell of its own; each exercise needs a cell that answers it and "
+            f'a cell that checks it with hl.check("{lab.number}.{lost[0]}", {lost[0]})'
         )
     solutions = _solutions(notebook, solved_notebook(folder, answers))
     unsolved = [place.exercise for place in found if place.answer not in solutions]

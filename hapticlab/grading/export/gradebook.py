@@ -34,7 +34,7 @@ def push(reports, path, assignment=None):
         Where there is no gradebook at the path.
     """
     if importlib.util.find_spec("nbgrader") is None:
-        raise EngineMissingError("a gradebook is nbgrader's, which is not installed beside hapticlab; do: pip install nbgrader")
+        raise EngineMissingError("a gradebook needs nbgrader, which is not installed with hapticlab; do: pip install nbgrader")
     if not Path(path).is_file():
         raise CourseError(
             f"{path}: no such file; name the gradebook.db of a course, which `nbgrader generate_assignment` makes in its folder"
@@ -50,7 +50,7 @@ def push(reports, path, assignment=None):
 def _push(book, report, assignment):
     """Write one report and return what found no place."""
     if report.problem:
-        return [f"{report.student}, lab {report.lab}: could not be graded; the gradebook keeps what it has"]
+        return [f"{report.student}, lab {report.lab}: could not be graded; the gradebook keeps its old entry"]
     there = [one.name for one in book.assignments if one.name == assignment or (not assignment and one.name[:2] == report.lab)]
     if len(there) != 1:
         said = f"has {' and '.join(there)}" if there else f"has no {assignment or 'assignment of that lab'}"

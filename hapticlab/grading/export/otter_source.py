@@ -67,7 +67,7 @@ def otter_assign(folder, answers, target, requirements="hapticlab"):
         The autograder's zip.
     """
     if importlib.util.find_spec("otter") is None:
-        raise EngineMissingError("otter makes this zip and is not installed beside hapticlab; do: pip install otter-grader")
+        raise EngineMissingError("this zip file needs otter, which is not installed with hapticlab; do: pip install otter-grader")
     files = {path.name: path for path in folder.path.iterdir() if path.is_file() and path != folder.notebook}
     with tempfile.TemporaryDirectory() as scratch:
         master = Path(scratch, folder.notebook.name)

@@ -56,5 +56,7 @@ def write(name: str, reports: Iterable[Report], roster: Roster | None = None, as
         raise CourseError(f"format {name!r}: needs one of {', '.join(FORMATS)}")
     made = FORMATS[name]
     if made.needs_roster and roster is None:
-        raise CourseError(f"{name} knows students by its own ids; name a CSV file that it gave out: --roster FILE.csv")
+        raise CourseError(
+            f"{name} identifies students by its own ids; give a CSV file that you exported from it: --roster FILE.csv"
+        )
     return made.write(tuple(reports), roster, assignment or (folder if made.folder_is_assignment else ""))

@@ -36,7 +36,7 @@ def gradebook(reports: Sequence[Report], roster: Roster, assignment: str = "") -
     """
     lacking = [name for key, name in COLUMNS.items() if key not in roster.columns and key not in ("sis_user_id", "sis_login_id")]
     if lacking:
-        raise CourseError(f"the roster has no column {', '.join(lacking)}; export the gradebook of Canvas, which has them all")
+        raise CourseError(f"the roster has no column {', '.join(lacking)}; export the gradebook of Canvas, which has all of them")
     columns, earned = by_student(reports, assignment)
     info = [name for key, name in COLUMNS.items() if key in roster.columns]
     if "sis_login_id" not in roster.columns:  # Canvas knows SIS User ID only beside SIS Login ID

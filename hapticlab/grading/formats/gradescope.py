@@ -24,7 +24,7 @@ def results(reports: Sequence[Report], roster: Roster | None = None, assignment:
     """
     report = only(reports, "Gradescope")
     if report.grader_failed:
-        raise CourseError(f"no result for Gradescope, which would take it for 0 points: {report.problem}")
+        raise CourseError(f"no result was written for Gradescope, which would count it as 0 points: {report.problem}")
     told = {
         "score": points(report.earned),
         "output": _output(report),

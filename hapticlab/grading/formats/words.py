@@ -109,5 +109,5 @@ def title(report: Report) -> str:
 def only(reports: Sequence[Report], name: str) -> Report:
     """Return the one report of a format that is of one submission."""
     if len(reports) != 1:
-        raise CourseError(f"{name} reads the result of one submission; {len(reports)} were given. Grade each by itself")
+        raise CourseError(f"{name} reads the result of one submission; {len(reports)} were given. Grade each one separately")
     return reports[0]

@@ -66,7 +66,7 @@ def owner_of(folders):
 def check_depth(folders):
     """Refuse folders that nest deeper than any work."""
     if len(folders) > DEEPEST:
-        raise CourseError(f"{owner_of(folders)[-1]} holds folders nested more than {DEEPEST} deep; hand in the notebook alone")
+        raise CourseError(f"{owner_of(folders)[-1]} contains folders nested more than {DEEPEST} deep; hand in the notebook only")
 
 
 def is_kept(parts):
@@ -158,7 +158,7 @@ def _plain_file(path):
     flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     with os.fdopen(os.open(path, flags), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise CourseError("it is no plain file")
+            raise CourseError("it is not a plain file")
         yield file
 
 
@@ -172,7 +172,7 @@ def _member(file, inside):
         if info.flag_bits & ENCRYPTED:
             raise CourseError("it is locked by a password; hand it in without one")
         if info.compress_type not in METHODS:
-            raise CourseError("it is compressed in an unusual way; make the zip file anew")
+            raise CourseError("it is compressed in an unusual way; make the zip file again")
         with archive.open(info) as member:
             if len(inside) == 1:
                 yield member
@@ -192,7 +192,7 @@ def _bounded(file, most):
 def _zip(file):
     size = _contents_size(file)
     if size > MOST_CONTENTS:
-        raise CourseError(f"its table of contents has {size} bytes, more than any class needs; hand in the notebook alone")
+        raise CourseError(f"its table of contents has {size} bytes, more than any class needs; hand in the notebook only")
     file.seek(0)
     return zipfile.ZipFile(file)
 
@@ -204,7 +204,7 @@ def _contents_size(file):
     tail = file.read()
     end = tail.rfind(b"PK\x05\x06")
     if end < 0 or len(tail) < end + 22:
-        raise CourseError("it is no zip file, or was cut off; hand it in anew")
+        raise CourseError("it is not a zip file, or it is incomplete; hand it in again")
     if tail[max(0, end - 20) : end].startswith(b"PK\x06\x07") and end >= 76:
         return struct.unpack_from("<Q", tail, end - 36)[0]
     return struct.unpack_from("<L", tail, end + 12)[0]

@@ -63,7 +63,7 @@ def chosen(entries, lab, own=()):
     counts = [len(_checked(raw)[number.encode()]) for _, raw in contents]
     best = [content for content, count in zip(contents, counts, strict=True) if count == max(counts)]
     if len({raw for _, raw in best}) > 1:
-        raise CourseError(f"{' and '.join(entry.name for entry, _ in best[:3])} may each be meant; hand in one")
+        raise CourseError(f"{' and '.join(entry.name for entry, _ in best[:3])} are all possible; hand in only one")
     return best[0]
 
 
@@ -81,7 +81,7 @@ def _work(entries):
         raise CourseError(f"{packed[0].name} cannot be unpacked here; hand in the notebook itself, or a zip file")
     there = ", ".join(entry.name for entry in entries[:3]) or NOTHING
     hidden = "; a file is hidden by the dot before its name" if any(map(is_handed, entries)) else ""
-    raise CourseError(f"no notebook is in it; there is {there}{' and more' if len(entries) > 3 else ''}{hidden}")
+    raise CourseError(f"it contains no notebook; there is {there}{' and more' if len(entries) > 3 else ''}{hidden}")
 
 
 def _unpacked(entry):
@@ -101,7 +101,7 @@ def _highest(work, own):
             contents.append((entry, read_entry(entry, MOST_BYTES)))
             opened, size = opened + 1, size + len(contents[-1][1])
             if size > MOST_TOGETHER:
-                raise CourseError(f"its notebooks hold more than {MOST_TOGETHER // MIB} MiB together; hand in one")
+                raise CourseError(f"its notebooks have more than {MOST_TOGETHER // MIB} MiB together; hand in only one")
         meant = [content for content in contents if len(work) == 1 or not _is_plain(*content, own)]
         if meant:
             return meant

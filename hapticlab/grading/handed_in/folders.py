@@ -69,9 +69,9 @@ def _listed(place, parts, room):
         words = f"{told} cannot be read: {problem.strerror}; change its permissions, or ask for the notebook again"
         raise CourseError(words) from None
     if len(there) > room and not parts:
-        raise CourseError(f"{told} holds more than {MOST_FILES} files; name the folder of the submissions")
+        raise CourseError(f"{told} contains more than {MOST_FILES} files; give the folder of the submissions")
     if len(there) > room:
-        raise CourseError(f"{owner_of(parts)[-1]} holds more than {MOST_OF_ONE} files; hand in the notebook alone")
+        raise CourseError(f"{owner_of(parts)[-1]} contains more than {MOST_OF_ONE} files; hand in the notebook only")
     names = [(*parts, one.name, LINK) if _leads_away(one) else (*parts, one.name) for one in there if one.name not in folders]
     kept, inner = [name for name in names if is_kept(name)], [name for name in folders if not is_junk(name)]
     if parts and not kept and not inner and is_kept((*parts, NOTHING)):

@@ -37,7 +37,7 @@ def notebook_cells(raw):
         cells = [cell for sheet in sheets for cell in sheet["cells"]] if sheets else notebook["cells"]
         sources = [_source(cell) for cell in cells if isinstance(cell, dict) and cell.get("cell_type") == "code"]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise CourseError("is no notebook; it needs the JSON that Jupyter writes") from None
+        raise CourseError("is not a notebook; it needs the JSON that Jupyter writes") from None
     return _bounded(sources)
 
 
@@ -83,5 +83,5 @@ def _bounded(sources):
     if sum(map(len, sources)) > MOST_CODE + MOST_BLANK or len(sources) > MOST_CELLS:
         raise CourseError(f"has more code than any lab: at most {MOST_CELLS} cells and {MOST_CODE} characters")
     if not any(source.strip() for source in sources):
-        raise CourseError("holds no code; was it saved?")
+        raise CourseError("contains no code; was it saved?")
     return tuple(sources)

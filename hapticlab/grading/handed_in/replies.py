@@ -53,7 +53,7 @@ def outcomes_of(reply, count, printed):
     """
     several = reply.get("outcomes")
     if not isinstance(several, list) or len(several) != count:
-        raise Garbage("not one outcome for each case")
+        raise Garbage("the number of outcomes differs from the number of cases")
     left = [0, MOST_NUMBERS]
     return [_outcome(one, printed, left) for one in several]
 
@@ -104,11 +104,11 @@ def _numbers(value, left, depth):
         _count(left, len(value))
         return [_numbers(part, left, depth - 1) for part in value]
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise Garbage("no plain value")
+        raise Garbage("not a plain value")
     try:
         return float(value)
     except OverflowError:
-        raise Garbage("no number that a float holds") from None
+        raise Garbage("not a number that a float can represent") from None
 
 
 def _count(left, numbers):

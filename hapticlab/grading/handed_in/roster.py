@@ -102,8 +102,8 @@ class Roster:
         if column is None or (students and not found[column]):
             some = ", ".join(map(repr, students[:3]))
             raise CourseError(
-                f"{self.path}: none of its columns {self.told()} holds a student's id, such as {some}; submissions must be named "
-                "by what a column holds"
+                f"{self.path}: none of its columns {self.told()} contains the id of a student, such as {some}; the names of "
+                "submissions must appear in a column"
             )
         rows = {}
         for student, several in found[column].items():
@@ -206,17 +206,17 @@ def read_roster(path):
     except OSError as problem:
         raise CourseError(f"{path}: {problem.strerror or problem}; a roster is a CSV file with a row for each student") from None
     except UnicodeError:
-        raise CourseError(f"{path} is no text in UTF-8; save it as CSV UTF-8") from None
+        raise CourseError(f"{path} is not a text in UTF-8; save it as CSV UTF-8") from None
     text = SEPARATOR.sub("", text)
     first = text.partition("\n")[0]
     separator = max(",;\t", key=first.count)
     try:
         head, *rows = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     except (ValueError, csv.Error) as problem:
-        raise CourseError(f"{path} is no CSV file with a row of names first: {problem}") from None
+        raise CourseError(f"{path} is not a CSV file whose first row has the names of the columns: {problem}") from None
     columns = {re.sub(r"\W+", "_", name.strip().casefold()).strip("_"): name.strip() for name in head}
     if len(columns) != len(head) or "" in columns:
-        raise CourseError(f"{path}: the first row is {head}; it needs a name for each column, no two alike")
+        raise CourseError(f"{path}: the first row is {head}; it needs a different name for each column")
     people = [[*row, *[""] * len(head)] for row in rows if not all(NO_STUDENT.fullmatch(cell) for cell in row[:5])]
     found = (dict(zip(columns, row, strict=False)) for row in people)
     return Roster(str(path), columns, tuple(row for row in found if not TEST_STUDENT.fullmatch(row.get("student", ""))))

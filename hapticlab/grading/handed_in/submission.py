@@ -80,7 +80,7 @@ def find_submissions(paths, lab=None):
     ...     for name in ("ada.py", "bob.ipynb"):
     ...         _ = Path(folder, name).write_text("k = 150")
     ...     [(source.student, read(source).cells, read(source).problem) for source in find_submissions([folder])]
-    [('ada', ('k = 150',), ''), ('bob', (), 'bob.ipynb is no notebook; it needs the JSON that Jupyter writes')]
+    [('ada', ('k = 150',), ''), ('bob', (), 'bob.ipynb is not a notebook; it needs the JSON that Jupyter writes')]
     """
     return [replace(source, lab=lab or "") for source in _told_apart(_with_work(_all_found(paths, lab or "")))]
 
@@ -115,7 +115,7 @@ def lab_of(sources):
     named = sorted({lab_number(part) for part in parts} - {""})
     if len(named) != 1:
         told = f"name labs {', '.join(named)}" if named else "name no lab"
-        raise CourseError(f"the files {told}; say which one is graded, such as --lab 02")
+        raise CourseError(f"the files {told}; give the lab to grade, such as --lab 02")
     return named[0]
 
 
@@ -199,8 +199,8 @@ def _each(entries, lab, name):
             groups[by_system, student_of(first, lab) if by_system else first].append(entry)
     found = [_source(owner, several[0].parts[0], several, lab) for (_, owner), several in groups.items()]
     words = line_of(
-        f"it has the lab's own name, beside other work in {name}: name it after its student, or where all that is one "
-        f"student's, put {name} into a folder {TREE}"
+        f"it has the name of the lab, next to other files in {name}. Name it after its student, or, if all these files "
+        f"belong to one student, put {name} into a folder {TREE}"
     )
     return [replace(one, problem=one.problem or words) if is_lab(one.name, lab) else one for one in found]
 
@@ -226,7 +226,7 @@ def _told_apart(sources):
         others, student = several[source.student], source.student
         if len(others) > 1:
             ways = " and ".join("/".join(one.entries[0].parts) if one.entries else one.name for one in others[:3])
-            words = f"{len(others)} submissions are {student}'s: {ways}; keep one, or name them apart"
+            words = f"{len(others)} submissions belong to {student}: {ways}; keep one, or give them different names"
             number = 1
             while source is not others[0] and student in taken:
                 number += 1

@@ -78,7 +78,7 @@ def enter(request):
     if calls:
         linux.filter_calls(calls)
     elif request["level"] != "none":
-        raise OSError(f"the numbers of system calls of {platform.machine()} are not known, so none can be refused")
+        raise OSError(f"the numbers of system calls of {platform.machine()} are not known, so none can be blocked")
 
 
 def limit(request):

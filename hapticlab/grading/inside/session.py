@@ -78,7 +78,7 @@ class Session:
         outcomes = [self.outcome(request["kind"], answer, given) for given in request["givens"]]
         text = json.dumps(outcomes)
         if len(text) > self.limits["answer"] or text.count(",") > MOST_NUMBERS:
-            outcomes = [{"value": None, "problem": "its values are too large to hand over", "printed": ""}] * len(outcomes)
+            outcomes = [{"value": None, "problem": "its values are too large to transfer", "printed": ""}] * len(outcomes)
         return {"outcomes": outcomes}
 
     def outcome(self, kind, answer, given):
@@ -105,4 +105,4 @@ def quiet_names():
 
 def no_input(prompt=""):
     """Raise, as nobody sits there."""
-    raise EOFError("nobody answers input() while a notebook is graded")
+    raise EOFError("input() gets no answer while a notebook is graded")

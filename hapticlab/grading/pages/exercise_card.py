@@ -18,10 +18,10 @@ def card(one):
     Examples
     --------
     >>> from hapticlab.grading.report import ExerciseReport
-    >>> words = "-2 N, expected 2 N. The sign is turned."
-    >>> one = ExerciseReport("F", "function", right=1, cases=3, words=words, slip="The sign is turned.", hint="Who pushes?")
+    >>> words = "-2 N, expected 2 N. The sign is wrong."
+    >>> one = ExerciseReport("F", "function", right=1, cases=3, words=words, slip="The sign is wrong.", hint="Who pushes?")
     >>> [line.partition(":</strong> ")[2] for line in card(one).split("</p>")[1:-1]]
-    ['-2 N', 'The sign is turned.', 'Who pushes?']
+    ['-2 N', 'The sign is wrong.', 'Who pushes?']
     """
     told = {"wrong": _without_answer(one), "likely slip": one.slip, "hint": "" if one.words.startswith(RAISED) else one.hint}
     rows = tuple((label, words) for label, words in told.items() if words)

@@ -78,11 +78,11 @@ def _divided(folder):
     if folder.name == GRADERS:
         return folder.parent
     if "memory" not in (folder / "cgroup.controllers").read_text().split():
-        raise OSError(0, "the group of this process was not given the control of memory")
+        raise OSError(0, "the group of this process has no control of memory")
     others = {int(line) for line in (folder / "cgroup.procs").read_text().split()} - {os.getpid()}
     if others:
         begin = "systemd-run --user --scope -p Delegate=yes hapticlab grade ..."
-        raise OSError(0, f"{len(others)} other processes are in the group of this process; begin it by {begin}")
+        raise OSError(0, f"{len(others)} other processes are in the group of this process; start it with {begin}")
     (folder / GRADERS).mkdir(exist_ok=True)
     (folder / GRADERS / "cgroup.procs").write_text(str(os.getpid()))
     (folder / "cgroup.subtree_control").write_text("+memory")

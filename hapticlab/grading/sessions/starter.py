@@ -31,17 +31,18 @@ MOST_CELLS = 200_000
 
 #: what a level leaves open, told before it is used
 NONE_LINUX = (
-    "nothing hides files from the students' code, which runs with your rights: grade only whom you trust, or in a container"
+    "files are not hidden from the students' code, which runs with your rights: grade only students whom you trust, or "
+    "grade in a container"
 )
 NONE_ELSEWHERE = (
-    "nothing but limits of time and of what is answered stands around the students' code, which runs with your rights: grade "
-    "only whom you trust, or in a container"
+    "only the limits on time and on answers restrict the students' code, which runs with your rights: grade only students "
+    "whom you trust, or grade in a container"
 )
 NO_LANDLOCK = (
-    "the kernel has no Landlock, so the students' code sees what all users may read, and may write where all may write until its "
-    "session ends"
+    "the kernel has no Landlock, so the students' code can read files that all users may read, and write where all users "
+    "may write, until its session ends"
 )
-NO_CALLS = "system calls are not known on this machine, and none is refused"
+NO_CALLS = "the system calls of this machine are not known, so none is blocked"
 
 
 @dataclass(frozen=True)
@@ -98,9 +99,9 @@ def start(sandbox="auto", hidden=(), limits=None, cells=(), zygote=None):
         raise CourseError(f"sandbox = {sandbox!r}; needs one of auto, {', '.join(LEVELS)}")
     if sys.platform != "linux":
         if sandbox in ("auto", "none"):
-            refused = dict.fromkeys(LEVELS[:-1], "only Linux has it")
+            refused = dict.fromkeys(LEVELS[:-1], "it exists on Linux only")
             return SpawnedStarter(Walls("none", refused, NONE_ELSEWHERE))
-        raise CourseError(f"sandbox = {sandbox!r}; only Linux has it; on this system use auto or none")
+        raise CourseError(f"sandbox = {sandbox!r}; it exists on Linux only; on this system use auto or none")
     refused, own = {}, None if zygote else Preloaded()
     with ExitStack() as ending:
         if own:
@@ -138,9 +139,9 @@ class Starter:
         if level == "user" and not _is_root():
             raise _Refused("only root can run code as another user")
         if limits.processes > 1 and level not in ("namespaces", "user"):
-            raise _Refused("more than one process needs namespaces, or a user of its own that the system counts them by")
+            raise _Refused("more than one process needs namespaces, or a separate user by which the system counts processes")
         if level == "landlock" and not self.walled:
-            raise _Refused("the kernel has no Landlock, or it is off; Linux has it from 5.13 on")
+            raise _Refused("the kernel has no Landlock, or it is off; Linux 5.13 and later have it")
         self.walls = Walls(level, dict(refused), self._weakness())
         # where nothing keeps another user to its own folder, what it leaves elsewhere is counted and deleted
         self.writable = watch.writable_folders() if level == "user" and not self.walled else []
@@ -197,7 +198,7 @@ class Starter:
         socket.send_fds(self.control, [json.dumps({"do": do, **own, **base, **settings}).encode()], descriptors)
         answer = self.control.recv(1 << 16)
         if not answer:
-            raise ConnectionError("the zygote is gone")
+            raise ConnectionError("the process that starts sessions (zygote) has ended")
         return json.loads(answer)
 
     def session(self, limits):
@@ -220,7 +221,7 @@ class Starter:
     def end(self, grace=0.0):
         """Kill the session and all it started; return how it ended by itself within some seconds, None where it did not."""
         code = None
-        with suppress(OSError):  # the zygote is gone, and all it forked ends with it
+        with suppress(OSError):  # the process that starts sessions (zygote) has ended, and all it forked ends with it
             code = self.order("end", grace=grace)["code"]
         if self.writable:
             _delete(watch.left_by(self.user, self.writable))

@@ -70,7 +70,7 @@ def kalman_velocity(
     return VelocityEstimate(
         rate(n), eom, title, cheaper, transfer, T * (a / b - sp.Rational(1, 2)) if steady else None,
         "Kalata, IEEE Trans. Aerospace and Electronic Systems 20 (1984) 174-182",
-        "an observer with a model of the paddle, as in hl.laws.predictive_wall: this one knows no mass and no force",
+        "an observer with a model of the paddle, as in hl.laws.predictive_wall: this filter uses neither mass nor force",
     )  # fmt: skip
 
 

@@ -118,8 +118,8 @@ def test_counts_are_floors_or_the_nearest():
 @pytest.mark.parametrize(
     ("made", "said"),
     [
-        (lambda: force_error(TRUE.F, TRUE), "do not say their period"),
-        (lambda: force_error(TRUE.F, TRUE, 3e-4), "take a step that divides it"),
+        (lambda: force_error(TRUE.F, TRUE), "does not contain its period."),
+        (lambda: force_error(TRUE.F, TRUE, 3e-4), "a step that divides T,"),
         (lambda: sensor_floor(SPRING, TRUE, 0.0, 1e-3), "number > 0 of counts"),
     ],
 )

@@ -196,7 +196,7 @@ def test_what_has_one_solver_is_not_certified():
     found = reference(hl.Scene(force=seen(y), eom=[falls]), STILL)
     assert not found.certified and not found.certifies(1.0)
     assert "one solver" in found.how and "micro-impulses" in found.how
-    assert "uncertified, one solver has" in str(found) and "inf" not in str(found)
+    assert "uncertified, one solver, whose force" in str(found) and "inf" not in str(found)
 
 
 def test_a_reference_is_asked_at_whole_numbers_of_its_step():

@@ -36,7 +36,10 @@ def test_the_error_of_the_held_force_can_be_bounded():
         ({"status": Status("chaotic", "after 0.02 s"), "why": "two solvers differ"}, "chaotic after 0.02 s: two solvers differ"),
         ({"status": "uncertified", "why": "they differ by 0.1 %", "doubt": 1e-3}, "uncertified: they differ by 0.1 %"),
         ({"status": Status("faulted", "after 0.1 s"), "why": "no number"}, "faulted after 0.1 s: no number"),
-        ({"b_where": "x = 0.05"}, "passive in small motions, the scene is not linear: it asks for the most damping at x = 0.05"),
+        (
+            {"b_where": "x = 0.05"},
+            "passive for small motions only, because the scene is not linear; it needs the most damping at x = 0.05",
+        ),
     ],
 )
 def test_a_choice_notes_what_is_not_certain(found, word):
@@ -46,10 +49,10 @@ def test_a_choice_notes_what_is_not_certain(found, word):
 @pytest.mark.parametrize(
     ("found", "word"),
     [
-        ({"doubt": math.inf, "status": "uncertified"}, "only one of the two solved it, and no error is certain"),
-        ({"b_req": math.inf}, "damping in the scene itself, no device has enough"),
-        ({"margin": 0.0}, "another method: with this one every step is too long"),
-        ({"sensor_floor": 0.5}, "a finer encoder: this one alone makes an error of 50 % of the greatest force"),
+        ({"doubt": math.inf, "status": "uncertified"}, "only one of the two solved it, so no error is certain"),
+        ({"b_req": math.inf}, "damping in the scene itself, because no device has enough"),
+        ({"margin": 0.0}, "a different method, because with this one every step is too long"),
+        ({"sensor_floor": 0.5}, "a finer encoder: this one alone causes an error of 50 % of the greatest force"),
     ],
 )
 def test_what_no_factor_mends_is_said_in_words(found, word):

@@ -54,7 +54,7 @@ def test_nonlinear_scene_is_linearised_about_its_start():
 
 
 def test_refusals():
-    with pytest.raises(AnalysisError, match=r"x\(n - 1\) remembers samples"):
+    with pytest.raises(AnalysisError, match=r"x\(n - 1\) uses past samples,"):
         impedance(hl.Scene(force=k * (x(n) - x(n - 1))), 1.0)
     with pytest.raises(ParameterError, match="k has no value"):
         impedance(hl.wall(), 1.0)

@@ -51,8 +51,8 @@ def test_it_says_what_sets_the_order():
     assert str(order_of(FORCES["damped"], "adams_bashforth3", hold="zoh", substeps=2)) == (
         "1 (x(t) of hold zoh; method adams_bashforth3: 3)"
     )
-    assert str(order_of(hl.Scene(force=K * x(hl.n)))) == "no error but rounding"
-    assert "states a period late" in order_of(FORCES["spring"], force_at="after").limits
+    assert str(order_of(hl.Scene(force=K * x(hl.n)))) == "only rounding errors"
+    assert "states late by one period" in order_of(FORCES["spring"], force_at="after").limits
     with pytest.raises(ParameterError, match="K is not live, so it needs a value"):
         order_of(hl.Scene(force=hl.parameters("K", units="N/m") * x(hl.n)))
 
@@ -156,7 +156,7 @@ def test_a_delay_costs_an_order(method):
         time = np.arange(steps + 1) * SPAN / steps
         F = load(program).run(steps + 1, handle(time)[0][:, None]).outputs[-1, 0, 0]
         errors.append(abs(F - K_ * (handle(SPAN)[0] - end)))
-    assert float(order_of(scene, method)) == 1 and "a sample late" in str(order_of(scene, method))
+    assert float(order_of(scene, method)) == 1 and "late by one sample" in str(order_of(scene, method))
     assert measured(errors) == pytest.approx(1, abs=0.1), errors
 
 

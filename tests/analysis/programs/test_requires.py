@@ -46,7 +46,7 @@ def test_states_that_the_force_cannot_see():
     assert item.kind == "state" and item.why == "no path to F or a watched channel"
     assert item.saves == size(watching) - size(seen) > 80
     assert len(report.program) == size(seen) and report.program.states == hl.compile(seen, T=T).states
-    assert [found(report, name).why for name in "cgl"] == ["only what is left out uses it"] * 3
+    assert [found(report, name).why for name in "cgl"] == ["only parts that are left out use it"] * 3
     assert found(report, "z").why == "the force depends on it"
     assert report.felt is scene and report.view is None
 
@@ -71,7 +71,7 @@ def test_parameters_that_are_folded():
     together = found(report, "b, m")
     assert together.saves == everything - size(scene, live="k") > 0
     assert found(report, "m").why == "folded to 0.05 kg"
-    assert found(report, "k").why == "live: may be set while it runs, >= 0 N/m"
+    assert found(report, "k").why == "live: can be changed while it runs, >= 0 N/m"
 
 
 def test_a_velocity_that_nothing_uses():
@@ -164,7 +164,7 @@ def test_what_a_replay_refuses():
     log = paddle().run(hl.wall()(k=100, x_o=0), duration=0.05, progress=False)
     s = hl.signal("s", unit="m")
     smooth = hl.Scene(force=0, eom=[sp.Eq(s(n), 0.9 * s(n - 1) + 0.1 * x(n))], watch={"shown": s(n)})
-    with pytest.raises(ProgramError, match=r"every = 10: s\(n\) counts samples.*every=1"):
+    with pytest.raises(ProgramError, match=r"every = 10: s\(n\) depends on the sampling period,.*every=1"):
         replay(smooth, log)
     assert len(replay(smooth, log, every=1).log.shown) == 50
     with pytest.raises(ProgramError, match="from 1 to 49"):
@@ -173,7 +173,7 @@ def test_what_a_replay_refuses():
         replay(hl.Scene(force=0), log)
     with pytest.raises(AnalysisError, match="not a scene"):
         replay(None, log)
-    with pytest.raises(AnalysisError, match="needs a record"):
+    with pytest.raises(AnalysisError, match="needs the record of a run"):
         replay(SHOWN, None)
 
 
@@ -194,7 +194,7 @@ def test_everything_is_what_was_left_out_together():
     kept = hl.Scene(force=COUPLER, eom=scene.eom, watch=[th])
     report = requires(scene, live="k")
     assert report.everything == size(kept) and len(report.program) == size(scene, live="k")
-    assert f"{len(report.program)} instructions a tick and 4 states (1 coordinate, 1 rate, 2 past samples)" in str(report)
+    assert f"{len(report.program)} instructions per tick and 4 states (1 coordinate, 1 rate, 2 past samples)" in str(report)
     assert f"; {report.everything} with nothing left out" in str(report)
 
 
@@ -288,7 +288,7 @@ def test_the_cause_is_an_inertia_that_changes():
     assert "that couples ph and th changes with ph(t), th(t)" in report.declined
     turned = sum(m * p.diff(t) ** 2 / 2 for p in at_1) - k * length**2 * th**2 / 2
     plain = requires(hl.Scene(force=k * (x(t) - length * th), eom=[hl.mechanics.lagrange(turned)]))
-    assert plain.declined.startswith("what comes to -k*l**2*th(t) in the equation of th is written with Deriv")
+    assert plain.declined.startswith("-k*l**2*th(t) in the equation of th is written with Deriv")
 
 
 def test_friction_may_stick():
@@ -312,7 +312,7 @@ def test_pairs_that_cannot_meet():
     report = requires(scene)
     assert [i.name for i in report.dropped if i.kind == "pair"] == ["ball0, ball1", "ball0, ball2", "ball1, ball2"]
     assert [i.name for i in report.kept if i.kind == "contact"] == ["ground_ball0", "ground_ball1", "ground_ball2"]
-    why = "its declared range is relied upon, and beyond it the motor goes off"
+    why = "its declared range is used, and outside it the motor switches off"
     assert found(report, "h0").why == found(report, "h2").why == why
     assert any(note.startswith("F is nan where h") for note in report.program.notes)
 

@@ -136,7 +136,7 @@ def test_a_few_large_bounces_are_growing_and_not_rest():
 
 def test_a_handle_that_moves_on_is_not_said_to_rest():
     t = np.arange(4000) * T
-    assert "moves on by 9.99 mm" in str(chatter(record(1e-2 * t)))
+    assert "by 9.99 mm," in str(chatter(record(1e-2 * t)))
     assert "rests at 5 mm" in str(chatter(record(5e-3 + 0 * t)))
 
 
@@ -189,7 +189,7 @@ def test_noise_of_a_sensor_at_rest_is_no_chatter(count):
     sensed = np.round(sensed / count) * count if count else sensed
     found = chatter(record(sensed))
     assert found.state == "none" and found.amplitude == 0 and found.scatter == pytest.approx(1e-5, rel=0.06)
-    assert "is no motion" in str(found)
+    assert "is not motion" in str(found)
     for f in (20.0, 197.0, 250.0):  # twice the noise, even of four samples a cycle, is an oscillation
         both = chatter(record(sensed + oscillation(f=f, amplitude=2e-5)))
         assert both.state != "none" and both.scatter == 0 and both.amplitude > 2e-5

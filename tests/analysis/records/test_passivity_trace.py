@@ -20,7 +20,7 @@ def test_the_longest_drain_and_both_pairings():
     np.testing.assert_allclose(found.W, W, atol=1e-18)
     np.testing.assert_allclose(found.same_sample, 1e-3 * np.cumsum([0, 1, 2, 2, -3, -1, -1, -4, -4, 0]), atol=1e-18)
     assert found.drained == pytest.approx(11e-3) and found.active == (3 * T, 9 * T)
-    assert not found.passive and "broken by 7 mJ at t = 0.009 s" in str(found)
+    assert not found.passive and "violated by 7 mJ at t = 0.009 s" in str(found)
     assert found.observed is None and found.dissipated is None
 
 
@@ -32,7 +32,7 @@ def test_what_a_damper_took_is_its_force_times_the_motion_it_was_held_over():
     spring = np.maximum(500 * log.x, 0)
     np.testing.assert_allclose(found.dissipated[1:], np.cumsum((log.F - spring)[:-1] * np.diff(log.x)), atol=1e-10)
     assert found.passive is False and found.W[-1] == pytest.approx(0, abs=1e-7)  # repaid after leaving
-    assert "the controller's damper took" in str(found)
+    assert "the controller's damper dissipated 0.158 mJ" in str(found)
 
 
 @pytest.mark.parametrize("counts", [None, 25_000.0, 4000.0])

@@ -91,8 +91,9 @@ def test_arrays_and_their_sizes():
         hl.records.storage(log, given).leak, hl.records.storage(log, hl.laws.wall_energy()).leak, atol=1e-18
     )
     for stored, words in [
-        (None, "hl.records.energy_books"), (given[1:], "one energy a sample"), (hl.v(hl.n) ** 2, "x\\(n\\) and parameters alone"),
-        (sp.Symbol("q") * hl.laws.wall_energy(), "q"), (hl.parameters("q", units="N/m") * x(hl.n) ** 2, "knows no q"),
+        (None, "hl.records.energy_books"), (given[1:], "one energy per sample:"),
+        (hl.v(hl.n) ** 2, "x\\(n\\) and parameters alone"),
+        (sp.Symbol("q") * hl.laws.wall_energy(), "q"), (hl.parameters("q", units="N/m") * x(hl.n) ** 2, "has no parameter q"),
     ]:  # fmt: skip
         with pytest.raises(AnalysisError, match=words):
             hl.records.storage(log, stored)

@@ -185,7 +185,7 @@ def test_refusals():
         hl.stability.step_limit("scene", T=1e-3)
     with pytest.raises(HapticlabError, match="rk9"):
         hl.stability.step_limit(coupler(), "rk9", T=1e-3)
-    with pytest.raises(AnalysisError, match=r"there are x, v, z, dz/dt"):
+    with pytest.raises(AnalysisError, match=r"the states are x, v, z, dz/dt"):
         hl.stability.step_limit(coupler(), T=1e-3, at={"y": 1.0})
     free = hl.parameters("k_free", units="N/m")
     F = free * (x(t) - z)

@@ -81,5 +81,5 @@ def test_too_short_a_run_and_a_hand_that_moves_are_refused():
     with pytest.raises(AnalysisError, match="20 samples of T = 0.001 s; needs at least 32"):
         LaneRuns(SCENE, 0.02).chatter(paddle, {"k": K})
     moving = replace(paddle, hand=replace(HAND, intent=lambda t: 0.01 * np.sin(t)))
-    with pytest.raises(AnalysisError, match="T is an axis and the hand moves"):
+    with pytest.raises(AnalysisError, match="T is an axis, and the hand moves or there is noise,"):
         LaneRuns(SCENE, 0.2).chatter(moving, {"k": K, "T": np.full(4, 2e-3)})

@@ -88,12 +88,12 @@ def test_what_is_left():
 
 def test_other_files_are_refused(tmp_path):
     (tmp_path / "letter").write_text("Dear all,\n")
-    with pytest.raises(hl.errors.AnalysisError, match=r"letter' is no file of a sweep; name another"):
+    with pytest.raises(hl.errors.AnalysisError, match=r"is not the file of a sweep; give the path of a new file"):
         Partial(tmp_path / "letter", WHAT)
     assert (tmp_path / "letter").read_text() == "Dear all,\n"
     written(tmp_path / "other", RECORDS)
     with pytest.raises(
-        hl.errors.AnalysisError, match=r"another sweep \(axis k: 4 from 1 to 2 there, none here; axis b: 9 here\)|there"
+        hl.errors.AnalysisError, match=r"a different sweep \(axis k: 4 from 1 to 2 there, none here; axis b: 9 here\)|there"
     ):
         Partial(tmp_path / "other", {"scene": "wall", "axis b": "9"})
     with pytest.raises(hl.errors.AnalysisError, match="cannot open it"):
@@ -125,7 +125,7 @@ def test_a_sweep_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
         swept(workers=stopped_after(4), resume=path)
     (note,) = stop.value.__notes__
     done = int(note.split()[0])
-    assert 0 < done < 360 and note == f"{done} of 360 points are in {str(path)!r}; the same call goes on from there"
+    assert 0 < done < 360 and note == f"{done} of 360 points are in {str(path)!r}; the same call continues from there"
     given = []
 
     def counting(function, pieces):
@@ -168,7 +168,7 @@ def test_a_stale_file_is_refused_and_says_why(tmp_path, monkeypatch):
         with pytest.raises(hl.errors.AnalysisError, match=said):
             swept(resume=path, **change)
     for change in ({"x_o": 1e-9}, {"paddle": hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=PUSHED.hand, noise=1e-5, seed=8)}):
-        with pytest.raises(hl.errors.AnalysisError, match="another sweep"):  # what a line does not show is in the program
+        with pytest.raises(hl.errors.AnalysisError, match="a different sweep"):  # what a line does not show is in the program
             swept(resume=path, **change)
     np.testing.assert_array_equal(swept(resume=path).values, swept().values)
     monkeypatch.setattr(sweep_plan, "__version__", "99.0")

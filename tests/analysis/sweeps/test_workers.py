@@ -72,7 +72,9 @@ def test_any_map_will_do(alone):
 
 
 def test_a_map_that_loses_results_is_found_out():
-    with pytest.raises(hl.errors.AnalysisError, match=r"workers gave back \d+ of 540 points; needs a map that returns every"):
+    with pytest.raises(
+        hl.errors.AnalysisError, match=r"workers returned 450 of 540 points; needs a map that returns every result once"
+    ):
         swept(workers=lambda function, pieces: map(function, pieces[1:]))
 
 
@@ -99,12 +101,12 @@ def of_another(function, pieces):
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        (first_again, "a chunk twice, or one they did not get"),
-        (one_more, "a chunk twice, or one they did not get"),
-        (of_another, "a chunk twice, or one they did not get"),
+        (first_again, "a chunk twice, or one that they were not given"),
+        (one_more, "a chunk twice, or one that they were not given"),
+        (of_another, "a chunk twice, or one that they were not given"),
         (shortened, r"an array of shape \(\d+,\) for a chunk of \d+ points"),
-        (lambda function, pieces: None, "None; needs a map that gives back all results"),
-        (lambda function, pieces: [None for _ in pieces], "None; needs a map that returns what the function does"),
+        (lambda function, pieces: None, "None; needs a map that returns all results"),
+        (lambda function, pieces: [None for _ in pieces], "None; needs a map that returns the results of the function"),
         (lambda function, pieces: [ValueError("no " * 90)], r"ValueError\('no.* \.\.\.; needs"),
         (lambda function, pieces: [(0, 0, "none", 0)], r"\(0, 0, 'none', 0\); needs"),
         (lambda function, pieces: [([], 0, 1.0, 0)], r"\(\[\], 0, 1.0, 0\); needs"),
@@ -116,7 +118,7 @@ def test_only_what_was_measured_is_taken(wrong, words, tmp_path, monkeypatch):
     alone = swept(**few)
     monkeypatch.setattr(sweep_chunks, "MOST", 20)
     monkeypatch.setattr(sweep_chunks, "FEWEST", 20)
-    with pytest.raises(hl.errors.AnalysisError, match=f"workers gave back {words}"):
+    with pytest.raises(hl.errors.AnalysisError, match=f"workers returned {words}"):
         swept(workers=wrong, resume=tmp_path / "a", **few)
     np.testing.assert_array_equal(swept(resume=tmp_path / "a", **few), alone)
 
@@ -143,7 +145,7 @@ def test_a_map_gets_the_chunks_in_lists_that_grow(monkeypatch):
 def test_a_map_of_promises_is_refused():
     with (
         ThreadPoolExecutor(1) as pool,
-        pytest.raises(hl.errors.AnalysisError, match=r"not promises.*client\.get_executor\(\)\.map"),
+        pytest.raises(hl.errors.AnalysisError, match=r"not futures..*client\.get_executor\(\)\.map"),
     ):
         swept(workers=lambda function, pieces: [pool.submit(function, piece) for piece in pieces])
 
@@ -219,7 +221,9 @@ def test_a_killed_process_is_replaced():
 
 
 def test_processes_that_die_again_and_again_are_given_up():
-    with pytest.raises(hl.errors.AnalysisError, match="died 3 times in a row.*if __name__ == '__main__':"):
+    with pytest.raises(
+        hl.errors.AnalysisError, match="ended 3 times in a row before they finished any point..*if __name__ == '__main__':"
+    ):
         list(spread(os._exit, [3, 3, 3], 2, threads=False))
 
 

@@ -47,8 +47,8 @@ def test_it_prints_and_draws(found):
         ({"laws": []}, "needs one or more of zoh"),
         ({"first": 0}, "first = 0.0 N/m.*needs 0 < first <= most"),
         ({"first": 10.0, "most": 5.0}, "needs 0 < first <= most"),
-        ({"duration": 0.01}, "duration = 0.01 s is 10 samples; needs 32"),
-        ({"push": 0.2, "force_max": 0.1}, "no wall holds it. Push less"),
+        ({"duration": 0.01}, "duration = 0.01 s is 10 samples; needs at least 32"),
+        ({"push": 0.2, "force_max": 0.1}, "no wall can resist the push. Give a smaller push"),
     ],
 )
 def test_it_refuses_what_no_trial_can_answer(given, words):

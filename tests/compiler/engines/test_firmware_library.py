@@ -130,7 +130,7 @@ def test_the_wheel_runs_the_machine_where_nothing_can_be_built(wheel, tmp_path):
     with (package / "firmware" / "core" / "vm.h").open("a") as header:  # the library is now of other sources
         header.write("/* changed */\n")
     ran = child(python, "-I", "-c", RUN_VM, **surroundings)
-    assert "EngineMissingError" in ran.stderr and "Set XDG_CACHE_HOME to a folder of yours;" in ran.stderr
+    assert "EngineMissingError" in ran.stderr and "Set XDG_CACHE_HOME to a folder of your own;" in ran.stderr
 
 
 @pytest.mark.wide
@@ -381,7 +381,7 @@ def test_the_library_is_built_once_and_kept(monkeypatch, tmp_path):
 def test_a_cache_that_cannot_be_written_is_an_error_with_a_cure(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setattr(firmware_library, "_cache_folder", lambda: tmp_path / "file" / "hapticlab")
-    with pytest.raises(EngineMissingError, match="Set XDG_CACHE_HOME to a folder of yours;"):
+    with pytest.raises(EngineMissingError, match="Set XDG_CACHE_HOME to a folder of your own;"):
         firmware_library.built(16)
 
 

@@ -151,7 +151,7 @@ def test_what_could_not_be_graded_changes_no_mark(course):
     before = scores(course)
     lost = [replace(marked(student, "02"), problem="no JSON") for student in ("ada", "nobody")]
     assert push(lost, course / "gradebook.db") == [
-        f"{student}, lab 02: could not be graded; the gradebook keeps what it has" for student in ("ada", "nobody")
+        f"{student}, lab 02: could not be graded; the gradebook keeps its old entry" for student in ("ada", "nobody")
     ]
     assert scores(course) == before and before["02", "ada"] == 2.0
 

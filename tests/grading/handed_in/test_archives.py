@@ -39,22 +39,24 @@ def with_flags(content, flags):
     return bytes(changed)
 
 
-NOTHING, LINK = "no notebook is in it; there is nothing", "no notebook is in it; there is a link"
-HIDDEN = "no notebook is in it; there is {}; a file is hidden by the dot before its name"
+NOTHING, LINK = "it contains no notebook; there is nothing", "it contains no notebook; there is a link"
+HIDDEN = "it contains no notebook; there is {}; a file is hidden by the dot before its name"
 INNER = "y.zip is a zip file inside a zip file; hand in the notebook itself"
 LINKED = stat.S_IFLNK | 0o777
 #: what ada's zip file holds, and the cells or the words that come of it
 ZIPS = {
-    "a path of 30 000 folders": (archive(member("a/" * 30_000 + "x.ipynb")), "a holds folders nested more than 40 deep"),
-    "such a path beside work": (archive(member("x.ipynb"), member("b/" * 30_000 + "y")), "b holds folders nested more than 40"),
+    "a path of 30 000 folders": (archive(member("a/" * 30_000 + "x.ipynb")), "a contains folders nested more than 40 deep"),
+    "such a path beside work": (archive(member("x.ipynb"), member("b/" * 30_000 + "y")), "b contains folders nested more "
+                                                                                         "than 40"),
     "names that lead elsewhere": (archive(member("../../../etc/x.ipynb")), ("ada",)),
     "an absolute name": (archive(member("/etc/passwd.ipynb")), ("ada",)),
     "a name of dots": (archive(member("../..")), NOTHING),
     "the same name twice": (
-        archive(member("x.ipynb"), member("x.ipynb", BOB)), "x.ipynb and x.ipynb may each be meant; hand in one"),
+        archive(member("x.ipynb"), member("x.ipynb", BOB)), "x.ipynb and x.ipynb are all possible; hand in only one"),
     "the same file twice": (archive(member("x.ipynb"), member("x.ipynb")), ("ada",)),
     "a prefix": (archive(member("x.ipynb"), prefix=b"MZ" + b"\0" * 5000), ("ada",)),
-    "a comment with an end": (archive(member("x.ipynb"), comment=b"PK\5\6 and so on"), "it is no zip file, or was cut off"),
+    "a comment with an end": (archive(member("x.ipynb"), comment=b"PK\5\6 and so on"), "it is not a zip file, or it is "
+                                                                                       "incomplete"),
     "a locked member": (with_flags(archive(member("x.ipynb")), 1), "x.ipynb: it is locked by a password; hand it in without one"),
     "zip in zip": (zipped({"y.zip": zipped({"x.ipynb": ADA})}), INNER),
     "zip in zip in zip": (zipped({"y.zip": zipped({"z.zip": zipped({"x.ipynb": ADA})})}), INNER),
@@ -67,7 +69,7 @@ ZIPS = {
     "what Jupyter keeps": (zipped({"x.ipynb": ADA, ".ipynb_checkpoints/x-checkpoint.ipynb": BOB}), ("ada",)),
     "a tar file": (zipped({"x.tgz": b"\x1f\x8b"}), "x.tgz cannot be unpacked here; hand in the notebook itself, or a zip file"),
     "an unusual method": (archive(member("x.ipynb", compress_type=zipfile.ZIP_LZMA)), "compressed in an unusual way"),
-    "a name with a NUL": (archive(member("x.ipynb")).replace(b"x.ipynb", b"x\0ipynb"), "no notebook is in it; there is x"),
+    "a name with a NUL": (archive(member("x.ipynb")).replace(b"x.ipynb", b"x\0ipynb"), "it contains no notebook; there is x"),
     "sizes that lie": (
         zipped({"x.ipynb": ADA}).replace(len(ADA).to_bytes(4, "little"), b"\1\0\0\0"), "cannot be read: BadZipFile"),
 }  # fmt: skip
@@ -91,7 +93,7 @@ def test_a_zip_file_of_a_class_loses_nobody(tmp_path):
     assert handed(tmp_path / "class.zip") == {
         "ada": (("ada",), ""),
         "away": ((), LINK),
-        "deep": ((), "deep holds folders nested more than 40 deep; hand in the notebook alone"),
+        "deep": ((), "deep contains folders nested more than 40 deep; hand in the notebook only"),
         "dots": ((), HIDDEN.format("..dots.ipynb")),
         "empty": ((), NOTHING),
         "t": ((), "t.rar cannot be unpacked here; hand in the notebook itself, or a zip file"),
@@ -122,4 +124,4 @@ def test_notebooks_that_are_large_together_are_not_all_read(tmp_path, monkeypatc
     monkeypatch.setattr(file_choice, "MOST_TOGETHER", 1 << 20)
     large = notebook("k = 2", "#" * 400_000)
     fill(tmp_path, {**{f"ada/{number}.ipynb": large for number in range(4)}, "bob/y.ipynb": BOB})
-    assert handed(tmp_path)["ada"] == ((), "its notebooks hold more than 1 MiB together; hand in one")
+    assert handed(tmp_path)["ada"] == ((), "its notebooks have more than 1 MiB together; hand in only one")

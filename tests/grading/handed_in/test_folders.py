@@ -64,10 +64,10 @@ def a_socket(folder):
             os.chdir(here)
 
 
-NOTHING_THERE = "no notebook is in it; there is nothing"
-LINK_THERE = "no notebook is in it; there is a link"
-DEEP = "ada holds folders nested more than 40 deep; hand in the notebook alone"
-HIDDEN = "no notebook is in it; there is {}; a file is hidden by the dot before its name"
+NOTHING_THERE = "it contains no notebook; there is nothing"
+LINK_THERE = "it contains no notebook; there is a link"
+DEEP = "ada contains folders nested more than 40 deep; hand in the notebook only"
+HIDDEN = "it contains no notebook; there is {}; a file is hidden by the dot before its name"
 #: what is to be found in the folder of ada, and what she is told
 FOLDERS = {
     "nothing": (lambda folder: None, NOTHING_THERE),
@@ -79,7 +79,7 @@ FOLDERS = {
     "a link called a notebook": (link("x.ipynb", "x.ipynb"), "there is a link"),
     "a link to another's work": (link("x.ipynb", "../bob/y.ipynb"), "x.ipynb: it is a link; hand in the file itself"),
     "a device": (link("x.ipynb", "/dev/zero"), "there is a link"),
-    "a fifo": (lambda folder: os.mkfifo(folder / "x.ipynb"), "x.ipynb: it is no plain file"),
+    "a fifo": (lambda folder: os.mkfifo(folder / "x.ipynb"), "x.ipynb: it is not a plain file"),
     "a socket": (a_socket, "x.ipynb cannot be read: No such device or address; hand it in again"),
     "two dots": (lambda folder: fill(folder, {"..x.ipynb": ADA}), HIDDEN.format("..x.ipynb")),
     "a hidden folder": (lambda folder: fill(folder, {".work/x.ipynb": ADA, ".work/y.png": ""}), HIDDEN.format("x.ipynb")),
@@ -88,7 +88,7 @@ FOLDERS = {
     "a sparse notebook of 100 GB": (
         lambda folder: os.truncate(fill(folder, {"x.ipynb": b""}) / "x.ipynb", 100 << 30), "it is larger than 32 MiB"),
     "a tar file": (lambda folder: fill(folder, {"x.tar.gz": b"\x1f\x8b"}), "x.tar.gz cannot be unpacked here"),
-    "a document": (lambda folder: fill(folder, {"x.pdf": b"%PDF"}), "no notebook is in it; there is x.pdf"),
+    "a document": (lambda folder: fill(folder, {"x.pdf": b"%PDF"}), "it contains no notebook; there is x.pdf"),
 }  # fmt: skip
 
 
@@ -160,7 +160,7 @@ def test_what_holds_no_work_takes_nothing_from_a_student_who_has_some(tmp_path):
     (tmp_path / "ada").mkdir()
     fill(tmp_path, {"ada.ipynb": ADA, ".bob/y.ipynb": ADA, "bob.py": "bob", "bob.pdf": "%PDF", "cy/a.txt": "", "notes.md": ""})
     found = handed(tmp_path)
-    assert found == {"ada": (("ada",), ""), "bob": (("bob",), ""), "cy": ((), "no notebook is in it; there is a.txt")}
+    assert found == {"ada": (("ada",), ""), "bob": (("bob",), ""), "cy": ((), "it contains no notebook; there is a.txt")}
     assert left_aside([tmp_path], LAB) == ["bob.pdf", "notes.md", ".bob/y.ipynb", "ada/nothing"]
 
 
@@ -202,7 +202,7 @@ def test_more_folders_than_any_student_has_are_told(tmp_path, monkeypatch):
     for number in range(40):
         (tmp_path / f"eve/.{number}/.{number}").mkdir(parents=True)
     fill(tmp_path, {"bob/y.ipynb": BOB})
-    assert handed(tmp_path) == {"bob": (("bob",), ""), "eve": ((), "eve holds more than 30 files; hand in the notebook alone")}
+    assert handed(tmp_path) == {"bob": (("bob",), ""), "eve": ((), "eve contains more than 30 files; hand in the notebook only")}
 
 
 def test_files_of_many_students_are_not_added_up(tmp_path, monkeypatch):
@@ -222,7 +222,7 @@ def test_a_file_that_goes_or_changes_between_is_a_problem_or_read_as_it_is(tmp_p
     found = {student: read(source) for student, source in sources.items()}
     assert found["ada"].problem == "ada.ipynb cannot be read: No such file or directory; hand it in again"
     assert found["bob"].cells == ("ada",)
-    assert found["cy"].problem == "no notebook is in it; there is nothing"
+    assert found["cy"].problem == "it contains no notebook; there is nothing"
     assert found["dan"].problem.startswith("dan.ipynb")
 
 

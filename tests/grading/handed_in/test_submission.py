@@ -111,7 +111,7 @@ def test_work_under_the_labs_own_name_takes_no_marks_of_others(tmp_path, name, p
         found = handed(zipped(others, folder.with_suffix(".zip")) if packed else fill(folder, others))
         cells, problem = found.pop(name.partition("/")[0].partition(".")[0])
         assert cells == ()
-        assert f"it has the lab's own name, beside other work in {folder.name}: name it after its student" in problem
+        assert f"it has the name of the lab, next to other files in {folder.name}. Name it after its student" in problem
         assert list(found.values()) == [((student.partition("_")[0],), "") for student in found]
         assert len(found) == len(others) - 1
 
@@ -119,7 +119,7 @@ def test_work_under_the_labs_own_name_takes_no_marks_of_others(tmp_path, name, p
 def test_what_moodle_makes_beside_the_files_is_no_other_submission(tmp_path):
     files = {"Cleo Ng_8_assignsubmission_onlinetext_/onlinetext.html": "x", "Cleo Ng_8_assignsubmission_file_/mine.ipynb": ADA,
              "Dan_9_assignsubmission_onlinetext_/onlinetext.html": "x"}  # fmt: skip
-    expected = {"Cleo Ng_8": (("ada",), ""), "Dan_9": ((), "no notebook is in it; there is onlinetext.html")}
+    expected = {"Cleo Ng_8": (("ada",), ""), "Dan_9": ((), "it contains no notebook; there is onlinetext.html")}
     assert handed(zipped(files, tmp_path / "class.zip")) == expected
     folder = fill(tmp_path / "class", files)
     assert handed(folder) == handed(*folder.iterdir()) == expected
@@ -127,7 +127,7 @@ def test_what_moodle_makes_beside_the_files_is_no_other_submission(tmp_path):
 
 def test_a_text_or_an_address_typed_into_canvas_is_a_student_without_a_notebook(tmp_path):
     files = {"ngcleo_LATE_8_text.html": "x", "dvdan_9_link.html": "x", "eve_10_11_x.ipynb": ADA}
-    words = "no notebook is in it; there is {}"
+    words = "it contains no notebook; there is {}"
     expected = {"ngcleo_8": ((), words.format("ngcleo_LATE_8_text.html")), "dvdan_9": ((), words.format("dvdan_9_link.html")),
                 "eve_10": (("ada",), "")}  # fmt: skip
     assert handed(fill(tmp_path / "class", files)) == handed(zipped(files, tmp_path / "class.zip")) == expected
@@ -162,13 +162,13 @@ def test_a_copy_of_the_lab_as_it_came_is_set_aside(tmp_path):
     })  # fmt: skip
     found = {source.student: read(source, own) for source in find_submissions([tmp_path], LAB)}
     assert [len(found[student].cells) for student in ("ada", "bob", "cleo", "dan")] == [1, 1, 3, 3]
-    assert found["eve"].problem == f"{LAB}-Copy1.ipynb is no notebook; it needs the JSON that Jupyter writes"
+    assert found["eve"].problem == f"{LAB}-Copy1.ipynb is not a notebook; it needs the JSON that Jupyter writes"
 
 
 def test_a_notebook_that_a_dot_hides_is_named(tmp_path):
     files = {"ada/.x.ipynb": ADA, ".bob.ipynb": BOB, "cleo/.x.ipynb": BOB, "cleo/x.ipynb": ADA, "._dan.ipynb": "x",
              "cleo/.ipynb_checkpoints/.x.ipynb": BOB}  # fmt: skip
-    words = "no notebook is in it; there is {}; a file is hidden by the dot before its name"
+    words = "it contains no notebook; there is {}; a file is hidden by the dot before its name"
     expected = {"ada": ((), words.format(".x.ipynb")), "bob": ((), words.format(".bob.ipynb")), "cleo": (("ada",), "")}
     assert handed(fill(tmp_path / "class", files)) == handed(zipped(files, tmp_path / "class.zip")) == expected
 
@@ -196,7 +196,7 @@ def test_a_student_who_is_there_twice_is_named_and_each_gets_a_problem(tmp_path)
     assert (
         found["bob"][1]
         == found["bob (2)"][1]
-        == ("2 submissions are bob's: bob.ipynb and bob.ipynb; keep one, or name them apart")
+        == ("2 submissions belong to bob: bob.ipynb and bob.ipynb; keep one, or give them different names")
     )
     assert found["ada"] == (("ada",), "")
 
@@ -204,14 +204,14 @@ def test_a_student_who_is_there_twice_is_named_and_each_gets_a_problem(tmp_path)
 def test_undecidable_notebooks_are_named(tmp_path):
     fill(tmp_path, {"ada/a.ipynb": ADA, "ada/b.ipynb": BOB, "bob/b.pdf": "x", "bob/c.txt": "x"})
     found = handed(tmp_path)
-    assert found["ada"] == ((), "a.ipynb and b.ipynb may each be meant; hand in one")
-    assert found["bob"] == ((), "no notebook is in it; there is b.pdf, c.txt")
+    assert found["ada"] == ((), "a.ipynb and b.ipynb are all possible; hand in only one")
+    assert found["bob"] == ((), "it contains no notebook; there is b.pdf, c.txt")
 
 
 def test_which_lab_the_names_agree_on(tmp_path):
     fill(tmp_path, {f"one/ada/{LAB}/x.ipynb": ADA, f"one/{LAB}_bob.ipynb": BOB, "two/ada/01_x.ipynb": ADA, "three/x.ipynb": ADA})
     assert lab_of(find_submissions([tmp_path / "one"])) == "02"
-    with pytest.raises(CourseError, match=r"name labs 01, 02; say which one is graded, such as --lab 02"):
+    with pytest.raises(CourseError, match=r"name labs 01, 02; give the lab to grade, such as --lab 02"):
         lab_of(find_submissions([tmp_path / "one", tmp_path / "two"]))
     with pytest.raises(CourseError, match="name no lab"):
         lab_of(find_submissions([tmp_path / "three"]))
@@ -339,10 +339,10 @@ def test_links_and_what_is_no_file_are_never_read(tmp_path):
     os.mkfifo(tmp_path / "class/mallory/x.ipynb")
     found = handed(tmp_path / "class")
     assert found == {
-        "ada": ((), "no notebook is in it; there is a link"),
+        "ada": ((), "it contains no notebook; there is a link"),
         "bob": (("bob",), ""),
         "eve": ((), "x.ipynb: it is a link; hand in the file itself"),
-        "mallory": ((), "x.ipynb: it is no plain file"),
+        "mallory": ((), "x.ipynb: it is not a plain file"),
     }
 
 
@@ -379,16 +379,16 @@ def encrypted(content):
 
 
 HOSTILE = {
-    "no zip": (b"PK\3\4 and nothing more", "is no zip file, or was cut off"),
-    "cut off": (zipped({"x.ipynb": ADA})[:-30], "is no zip file, or was cut off"),
+    "no zip": (b"PK\3\4 and nothing more", "is not a zip file, or it is incomplete"),
+    "cut off": (zipped({"x.ipynb": ADA})[:-30], "is not a zip file, or it is incomplete"),
     "a bomb": (zipped({"x.ipynb": b"0" * (40 << 20)}), "larger than 32 MiB"),
     "a bomb in a zip": (zipped({"x.zip": zipped({"x.ipynb": b"0" * (40 << 20)})}),
                         "x.zip is a zip file inside a zip file; hand in the notebook itself"),
-    "a link": (hostile_link(), "no notebook is in it; there is a link"),
+    "a link": (hostile_link(), "it contains no notebook; there is a link"),
     "a large table": (with_size(zipped({"x.ipynb": ADA})), "its table of contents has 1073741824 bytes"),
     "a password": (encrypted(zipped({"x.ipynb": ADA})), "x.ipynb: it is locked by a password; hand it in without one"),
     "turned bytes": (zipped({"x.ipynb": ADA}).replace(b"PK\3\4", b"PK\3\5"), "cannot be read: BadZipFile"),
-    "empty": (zipped({}), "no notebook is in it; there is nothing"),
+    "empty": (zipped({}), "it contains no notebook; there is nothing"),
 }  # fmt: skip
 
 
@@ -422,7 +422,7 @@ def test_names_hold_nothing_that_turns_or_controls(tmp_path):
 def test_a_folder_of_more_files_than_any_class_has_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(folders, "MOST_FILES", 3)
     fill(tmp_path, {f"{name}.ipynb": ADA for name in "abcd"})
-    with pytest.raises(CourseError, match="more than 3 files; name the folder of the submissions"):
+    with pytest.raises(CourseError, match="more than 3 files; give the folder of the submissions"):
         find_submissions([tmp_path])
 
 
@@ -434,7 +434,7 @@ def test_too_many_files_of_one_student_are_a_problem_of_that_one_alone(tmp_path,
     assert handed(tmp_path / "class") == {
         "ada": (("ada",), ""),
         "bob": (("bob",), ""),
-        "eve": ((), "eve holds more than 3 files; hand in the notebook alone"),
+        "eve": ((), "eve contains more than 3 files; hand in the notebook only"),
     }
 
 

@@ -252,24 +252,24 @@ LAB = Lab("02", "Walls", 90, (
     [
         (
             Failing({"t": [0.0, 0.1, 0.2], "k": 1.0}, [1.0, 2.0, 3.5], [1.0, 2.0, 3.0], "N", True),
-            "time t [ms]", "wall [N]", "The largest difference is at time t = 200 ms: 3.5 came, 3 is expected.",
+            "time t [ms]", "wall [N]", "The largest difference is at time t = 200 ms: yours is 3.5, and 3 is expected.",
         ),
         (
             Failing({"x": [0.01, 0.0, -0.01]}, [1.0, 2.0, 3.0], [2e-3, 2.0, 3.0], "m", True),
-            "handle position x [mm]", "wall [mm]", "is at handle position x = 10 mm: 1000 came, 2 is expected.",
+            "handle position x [mm]", "wall [mm]", "is at handle position x = 10 mm: yours is 1000, and 2 is expected.",
         ),
         (
             Failing({"x": [0.01, 0.0, 0.01]}, [1.0, "nan", 3.0], [1.0, 2.0, 4.0], "N", False),
-            "sample", "wall [N]", "at sample 2: 3 came, 4 is expected. 1 of 3 numbers that came are NaN",
+            "sample", "wall [N]", "at sample 2: yours is 3, and 4 is expected. 1 of your 3 numbers are NaN",
         ),
         (
             Failing({"t": [0.0, 1.0, 2.0]}, [1.0, 2.0], [1.0, 2.0, 4.0], "N", False),
-            "time t [ms]", "wall [N]", "2 numbers came, 3 are expected.",
+            "time t [ms]", "wall [N]", "You gave 2 numbers; 3 are expected.",
         ),
         (
             Failing({}, {"curve 1": {"x": [0.0, 0.02], "y": [90.0, 90.0], "x_unit": "m", "y_unit": "N"}, "curve 2": CURVE},
                     {"curve 1": {"x": [0.0, 0.01, 0.02], "y": [0.0, 2.0, 4.0], "x_unit": "m", "y_unit": "N"}}, "", False),
-            "way [mm]", "F_e [N]", "The largest difference is at way = 20 mm: 3 came, 4 is expected.",
+            "way [mm]", "F_e [N]", "The largest difference is at way = 20 mm: yours is 3, and 4 is expected.",
         ),
     ],
 )  # fmt: skip

@@ -78,7 +78,7 @@ def test_a_function_answers_each_given(starter):
         reply = session.ask({"do": "evaluate", "name": "f", "kind": "function", "givens": [{"x": 1.5}, {"y": 1}]}, 10)
     first, second = reply["outcomes"]
     assert first == {"value": [1.5, 3.0], "problem": "", "printed": "hallo\n"}
-    assert second["value"] is None and "keep the names" in second["problem"]
+    assert second["value"] is None and "keep the argument names" in second["problem"]
 
 
 SOCKET = "channel()"

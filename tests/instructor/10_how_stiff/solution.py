@@ -30,7 +30,7 @@ def staircase(answers, start, factor):
 
 
 def converges_to(down, weight):
-    """Return the part of right answers at which steps down and up cancel."""
+    """Return the proportion of right answers at which steps down and up cancel."""
     return (weight / (1 + weight)) ** (1 / down)
 
 
