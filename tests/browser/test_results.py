@@ -22,7 +22,9 @@ def test_results_in_a_notebook(lab):
     outputs.nth(2).locator("summary", has_text="Listing").click()
     assert outputs.nth(2).locator("pre", has_text="tick:").is_visible()
     assert outputs.nth(0).locator("mjx-container").count() == 1
-    assert outputs.nth(0).locator("strong").inner_text().endswith("wall: the force on the environment; without a value yet: k, x_o")
+    assert (
+        outputs.nth(0).locator("strong").inner_text().endswith("wall: the force on the environment; without a value yet: k, x_o")
+    )
     for number in range(2):
         assert "<script>" in outputs.nth(number).locator("strong").inner_text()
     assert outputs.nth(1).locator("img").count() == 1 and page.title() != "run"
