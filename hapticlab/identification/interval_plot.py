@@ -76,7 +76,7 @@ def plot_intervals(intervals: Mapping[str, Estimate | tuple[float, float]], *, l
 def _span(ends, true):
     """Return the ends of an axis that shows the narrower intervals, and the true value."""
     widths = ends[:, 1] - ends[:, 0]
-    narrow = ends[widths <= WIDE * np.median(widths)] if len(ends) > NAMED else ends[widths <= WIDE * np.sort(widths)[:2].max()]
+    narrow = ends[widths <= WIDE * np.median(widths)]
     shown = np.r_[narrow.ravel(), [] if true is None else [true]]
     margin = 0.15 * (np.ptp(shown) or 1.0)
     return shown.min() - margin, shown.max() + margin
