@@ -1,0 +1,81 @@
+"""What labs 09 and 10 ask of a hand can be done with a mouse: throw the handle, compare blindly."""
+
+import pytest
+from lab import ask, eventually, grab, picture, until
+
+pytestmark = pytest.mark.wide
+
+BEGIN = """
+import numpy as np
+import hapticlab as hl
+thrown = hl.SimulatedPaddle.from_profile(
+    "hapkit", hand=hl.Hand("pinch"), m=0.0286, b=0.15, coulomb=0.048, noise=8e-6, seed=1
+)
+view = hl.live(thrown, hl.laws.virtual_damper()(B=0), sliders={}, let_go=True, time_scale=0.25)
+task = hl.people.stiffness_task()
+blind = hl.people.compare_blind(hl.SimulatedPaddle.from_profile("hapkit"), task, duration=4, pause=0.5, seed=3)
+"""
+IDENTIFY = """
+view.stop_recording()
+coast = hl.identify.coasting(view.log)
+found = hl.identify.spin_down(coast, counts_per_metre=1 / 12.8e-6, confidence=0.999)
+print(0.15 / 0.0286 in found["b/m"], 0.048 / 0.0286 in found["coulomb/m"], found.explained)
+"""
+
+
+def shown(lab, name):
+    page = lab.open(name, BEGIN, name, height=800)
+    page.wait_for_selector("canvas.hl-stage", state="attached")
+    return page
+
+
+def test_a_flick_with_the_mouse_tells_damping_and_friction(lab):
+    page = shown(lab, "view")
+    until(page, ".hl-status", "Running")
+    x, y = grab(page, "canvas.hl-stage")
+    for k in range(20):
+        page.mouse.move(x - 8 * k, y)
+    eventually(page, "print(view._session.motion.place < -0.01)", "True")
+    ask(page, "view.record()")
+    for k in range(1, 13):
+        page.mouse.move(x - 152 + 22 * k, y)
+        page.wait_for_timeout(30)
+    page.mouse.up()
+    eventually(page, "print(view._session.motion.held)", "False")
+    rests = "log = view.log; print(bool(np.isnan(log.intent[-300:]).all() and np.ptp(log.x[-200:]) < 6e-5))"
+    eventually(page, rests, "True")
+    picture(page, "by-mouse-flick")
+    assert ask(page, IDENTIFY) == "True True True"
+    page.close()
+
+
+def test_a_blind_trial_takes_two_presses_and_shows_neither_number_nor_pointer(lab):
+    page = shown(lab, "blind")
+    head, box = page.locator(".hl-blind-head"), page.locator("canvas.hl-stage").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    head.get_by_role("button", name="Feel the first").click()
+    felt = []
+    for which in (0, 1):
+        page.wait_for_function("() => document.querySelector('.hl-blind:not(.hl-covered)')")
+        began = float(ask(page, "print(blind._session.motion.place)"))
+        page.mouse.move(x, y)
+        page.mouse.down()
+        for k in range(30):
+            page.mouse.move(x + 2 * k, y)
+        eventually(page, f"print(blind._session.motion.place > 0.003 and blind._felt == set(range({which + 1})))", "True")
+        page.wait_for_timeout(300)
+        felt.append(float(ask(page, "print(blind._session.motion.place)")))
+        if which == 0:
+            picture(page, "by-mouse-blind")
+            hidden = [page.locator(f".hl-live {part}").first.is_visible() for part in (".hl-readout", ".hl-graph", ".hl-buttons")]
+            assert hidden == [False] * 3
+            assert page.locator("canvas.hl-stage").evaluate("(e) => getComputedStyle(e).cursor") == "none"
+            page.mouse.up()
+            page.wait_for_function("() => document.querySelector('.hl-covered')")
+        assert abs(began) < 1e-3  # no jump tells which one changed
+    page.keyboard.press("1" if felt[0] < felt[1] else "2")  # the stiffer one gives less
+    page.mouse.up()
+    assert 'Saved: you answered "the ' in until(page, ".hl-blind-head p", "Saved")
+    assert head.locator("strong").inner_text() == "Trial 2"
+    assert ask(page, "print(blind.result.trials[0].right)") == "True"
+    page.close()
