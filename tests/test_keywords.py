@@ -9,6 +9,7 @@ from hapticlab.vocabulary import public
 UNIT = re.compile(r"(?<!=)\[([^\[\]\d,'\"]{1,8}(?:\^[\dn])?)\]")
 #: keywords that have more than one unit, and why
 EXCEPTIONS = {
+    "height": "of a figure in inches, as matplotlib has it; of what is felt in metres",
     "k": "a spring's stiffness; of Hunt and Crossley's contact in N/m^n, for a gap to the power n",
     "standard": "the stimulus that is compared with: each task has its own quantity",
 }
