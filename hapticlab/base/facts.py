@@ -88,7 +88,7 @@ def _short(said):
 
 def facts(record: Any) -> list[Fact]:
     """Every documented attribute of a record, or every field of a dataclass that documents none."""
-    known = documented(type(record))
+    known = documented(record.__class__)
     names = [name for name in known if not name.startswith("_")]
     if is_dataclass(record):
         names += [f.name for f in fields(record) if f.name not in known and f.repr and not f.name.startswith("_")]

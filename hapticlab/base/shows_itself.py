@@ -61,7 +61,7 @@ class ShowsItself:
         super().__init_subclass__(**options)
         cls._repr_pretty_ = ShowsItself._all_words  # type: ignore[attr-defined]
         if "__repr__" not in cls.__dict__ and cls.__str__ is not object.__str__:
-            cls.__repr__ = _in_one_line  # type: ignore[method-assign]
+            cls.__repr__ = _in_one_line  # type: ignore[method-assign, assignment]
 
     def _sentence(self) -> str:
         """What it says first: the first line of its text, or of what its class says of itself."""
