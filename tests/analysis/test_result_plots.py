@@ -22,7 +22,19 @@ WITHOUT = {
     "Report", "CheckResult", "Settings", "Contacts", "Found",
 }  # fmt: skip
 #: what is run, felt or shown, and is no result
-OTHERS = {"Telemetry", "Scene", "SerialPaddle", "SimulatedPaddle", "MapView", "LiveView", "BoardWall", "WallLaw", "Hand", "Task"}
+OTHERS = {
+    "Telemetry",
+    "Scene",
+    "SerialPaddle",
+    "SimulatedPaddle",
+    "MapView",
+    "LiveView",
+    "BoardWall",
+    "WallLaw",
+    "Hand",
+    "Task",
+    "BlindComparison",
+}
 
 
 def oscillation(frequency=20.0, amplitude=1e-3):
