@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "browser"))
 from lab import browsing
 
 #: of one picture, and of its place on the sheet [px]
-WIDE, HIGH, SHEET = 840, 220, 560
+WIDE, HIGH, SHEET = 840, 220, 500
 THEMES = {
     "light": {"dark": False, "ink": "#000", "paper": "rgb(255,255,255)", "quiet": "#595959", "grid": "#d9d9d9"},
     "dark": {"dark": True, "ink": "#eee", "paper": "rgb(17,17,17)", "quiet": "#a6a6a6", "grid": "#3a3a3a"},
@@ -138,7 +138,7 @@ def main():
                     print(f"{name:26s} {told['took']:6.3f} ms  {told['bytes']:6d} bytes of points  {told['shape']:6d} of style"
                           + (f"  {hidden} labels found no place" if hidden else ""))  # fmt: skip
             given.folder.mkdir(parents=True, exist_ok=True)
-            sheet.quantize(48).save(given.folder / f"{theme}.png", optimize=True)
+            sheet.quantize(96).save(given.folder / f"{theme}.png", optimize=True)
 
 
 if __name__ == "__main__":
