@@ -101,7 +101,10 @@ class Schematic:
     def _wall(self, s, wall, origin, at, state):
         u, half = s.u, wall.side * self.layout.half[wall.mover] * s.u
         face = FACE if wall.mover == "x" else self._height(wall.mover) / 2
-        s.wall(wall.where(state)[0] + origin + half, at + half, wall.side, face * u, _letters(wall.label))
+        place = wall.where(state)[0] + origin + half
+        s.wall(place, at + half, wall.side, face * u, _letters(wall.label))
+        if wall.stiffness is not None:
+            s.text(((place + s.ends[wall.side > 0]) / 2, 0.0), _symbol(wall.stiffness), right=6.0 * wall.side, up=-1.0)
 
     def _hold(self, s, x):
         """Draw what holds the handle itself, to the left of it."""

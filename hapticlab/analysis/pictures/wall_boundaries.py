@@ -24,6 +24,8 @@ class Boundary:
         +1 where it acts to the right of its place, -1 to the left.
     label : str
         Name of the parameter that says where it is, if one does.
+    stiffness : expression or None
+        Of a spring behind it, where that is what acts.
     """
 
     mover: str
@@ -31,6 +33,7 @@ class Boundary:
     names: frozenset
     side: int
     label: str
+    stiffness: object = None
 
 
 def boundaries(scene):
@@ -45,12 +48,12 @@ def boundaries(scene):
     lengths = [sp.Symbol(type(q).__name__, real=True) for q in scene.coordinates if type(q).unit == "m"]
     known = {type(q).__name__ for q in scene.coordinates} | set(scene.parameters) | {"t", "T"}
     found = {}
-    for depth in depths(scene):
+    for depth, acts in _acting(scene):
         for mover in (HANDLE, *lengths):
             place, side = _place(depth, mover, lengths)
             if side and {s.name for s in place.free_symbols} <= known:
-                found[mover.name, side, place] = None
-    return tuple(Boundary(mover, *formula(place), side, _label(place)) for mover, side, place in found)
+                found.setdefault((mover.name, side, place), _stiffness(acts, mover))
+    return tuple(Boundary(mover, *formula(at), side, _label(at), spring) for (mover, side, at), spring in found.items())
 
 
 def _sides(eom):
@@ -60,16 +63,28 @@ def _sides(eom):
 
 def depths(scene):
     """Return expressions, in plain symbols, that are positive where a case, a maximum or a contact of a scene acts."""
+    return [depth for depth, _ in _acting(scene)]
+
+
+def _acting(scene):
+    """Return pairs of what is positive where something acts, and what acts there: 0 where that is not looked for."""
     found = []
     for expr in [scene.force, *_sides(scene.eom)]:
         for cases in expr.atoms(sp.Piecewise):
             for value, condition in cases.args[:-1]:
                 if value != 0:
-                    found += [rel.gts - rel.lts for rel in condition.atoms(sp.Ge, sp.Gt, sp.Le, sp.Lt)]
+                    found += [(rel.gts - rel.lts, value) for rel in condition.atoms(sp.Ge, sp.Gt, sp.Le, sp.Lt)]
         for most in expr.atoms(sp.Max):
-            found += [part for part in most.args if part != 0] if sp.S.Zero in most.args else []
+            found += [(part, sp.S.Zero) for part in most.args if part != 0] if sp.S.Zero in most.args else []
     gaps = [c.gap for entry in scene.eom for c in getattr(entry, "contacts", ()) if isinstance(c, Contact)]
-    return [plain_symbols(depth) for depth in (*found, *(-gap for gap in gaps))]
+    found += [(-gap, sp.S.Zero) for gap in gaps]
+    return [(plain_symbols(depth), plain_symbols(sp.sympify(acts))) for depth, acts in found]
+
+
+def _stiffness(acts, mover):
+    """Return the slope of what acts, where that is one parameter; else None."""
+    slope = sp.expand(acts.diff(mover))
+    return slope if slope.is_Symbol else -slope if (-slope).is_Symbol else None
 
 
 def _place(depth, mover, lengths):
