@@ -11,6 +11,7 @@ const ASKED = 8000 // [ms] that details which were asked for are not talked over
 const HIDDEN = 3000 // [ms] until a board's motor goes off whose view nobody sees
 const LONG = 90 // letters
 const FOLDED = 3 // sliders that are not folded away
+const UPRIGHT = 2.4 // times as wide as high: below this a picture stands or hangs
 const NARROW = 560 // [px]: the loop goes below the traces
 const WAITING = "Waiting for the kernel: this moves in a running notebook only."
 
@@ -319,7 +320,9 @@ class View {
     this.width = width
     const narrow = width < NARROW
     this.root.classList.toggle("hl-narrow", narrow)
-    this.picture.resize(width, narrow ? 170 : 200)
+    const [left, right, bottom, top] = this.about.box
+    const upright = right - left < UPRIGHT * (top - bottom) // what stands or hangs takes more height
+    this.picture.resize(width, narrow ? 170 : upright ? 230 : 200)
     this.traces.resize(this.graph.parentElement.clientWidth, 190)
     this.loop?.resize(this.ring.parentElement.clientWidth, narrow ? 180 : 152)
     this.ask()
