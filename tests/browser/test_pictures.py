@@ -97,12 +97,12 @@ def test_a_body_that_left_the_picture_is_marked_at_the_rim_and_a_longer_rod_wide
     scene = SCENES["a mass of one's own"]
     picture = moving_picture(scene)
     state = {**dict(scene.values), "x": 0.0, "F": 0.0, "intent": 0.0}
-    beyond = [label["words"] for label in draw(page, picture, {**state, "z": 0.4})["placed"] if "away" in label["words"]]
-    assert len(beyond) == 1 and beyond[0].startswith("$z$ is ") and beyond[0].endswith(" mm away")
-    assert not [label for label in draw(page, picture, {**state, "z": 0.0})["placed"] if "away" in label["words"]]
+    beyond = [label["words"] for label in draw(page, picture, {**state, "z": 0.4})["placed"] if "farther" in label["words"]]
+    assert len(beyond) == 1 and beyond[0].startswith("$z$ is ") and beyond[0].endswith(" mm farther out")
+    assert not [label for label in draw(page, picture, {**state, "z": 0.0})["placed"] if "farther" in label["words"]]
     swing = SCENES["a pendulum of one's own"]
     picture = moving_picture(swing)
     state = {**dict(swing.values), "x": 0.0, "z": 0.0, "theta": 0.3, "F": 0.0, "intent": 0.0}
     short, long = (draw(page, picture, {**state, "l": l}) for l in (0.15, 0.4))
     assert long["scale"] < 0.6 * short["scale"]
-    assert not [label for label in long["placed"] if "away" in label["words"]]
+    assert not [label for label in long["placed"] if "farther" in label["words"]]

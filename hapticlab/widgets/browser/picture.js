@@ -89,7 +89,7 @@ class Picture {
     const away = Math.hypot(x - rx, y - ry)
     const [ux, uy] = [(x - rx) / away, (y - ry) / away]
     arrow(this, rx - 14 * ux, ry - 14 * uy, rx + (RIM - 2) * ux, ry + (RIM - 2) * uy, WARM)
-    const words = `$${TEX[name] || name}$ is ${tidy(Math.round((1000 * away) / this.scale))} mm away`
+    const words = `$${TEX[name] || name}$ is ${tidy(Math.round((1000 * away) / this.scale))} mm farther out`
     this.labels.add(words, INK, rx - 14 * ux, ry - 14 * uy, rx - 30 * ux, ry - 30 * uy)
   }
 
