@@ -1,7 +1,7 @@
 """The exceptions of hapticlab. Every message says what was given, what is needed, and what to do.
 
-A notebook shows your own line and the message; ``%tb`` in the next cell shows the whole traceback. A script does so too, and
-``python -X dev FILE`` shows the whole.
+A notebook shows your own line and the message; ``%tb`` in the next cell shows the whole traceback. A script does so
+too, and ``python -X dev FILE`` shows the whole.
 
 >>> import hapticlab as hl
 >>> try:
@@ -59,19 +59,19 @@ __all__ = [
 
 
 class HapticlabError(Exception):
-    """Base of everything hapticlab raises on purpose."""
+    """Base class of all errors that hapticlab raises on purpose."""
 
 
 class UnusualValueWarning(UserWarning):
-    """A value is far from what any paddle has: is its unit the one that was meant?"""
+    """A value is far from that of any paddle, so its unit may be wrong."""
 
 
 class MissedEventWarning(UserWarning):
-    """A run left events unlocated, or bodies inside each other: its motion may be wrong from then on."""
+    """A run left events unlocated, or bodies overlapped, so its motion may be wrong after that."""
 
 
 class SceneError(HapticlabError, ValueError):
-    """A scene cannot be felt as it is written."""
+    """A scene is not valid as it is written."""
 
 
 class UnitsError(SceneError):
@@ -91,11 +91,11 @@ class MassError(SceneError):
 
 
 class ProgramError(HapticlabError, ValueError):
-    """A program is damaged, or asks for an operation no engine has."""
+    """A program is damaged, or needs an operation that no engine has."""
 
 
 class LiveConstantError(ProgramError):
-    """A method makes constants of what may be set while the program runs: ``live``, names of parameters."""
+    """A method needs constants where parameters are live; ``live`` has their names."""
 
     def __init__(self, message: str, live: Iterable[str] = ()) -> None:
         super().__init__(message)
@@ -103,7 +103,7 @@ class LiveConstantError(ProgramError):
 
 
 class LongStepError(ProgramError):
-    """A step is too long for a method: ``substeps`` are enough, None where so many are no cure."""
+    """A step is too long for a method; ``substeps`` is a sufficient number, or None if no number is enough."""
 
     def __init__(self, message, substeps=None):
         super().__init__(message)
@@ -115,11 +115,11 @@ class ProgramLimitError(ProgramError):
 
 
 class PaddleError(HapticlabError, ValueError):
-    """A paddle, simulated or real, was asked for what it cannot do."""
+    """A paddle, simulated or real, cannot do what was requested."""
 
 
 class PortError(PaddleError):
-    """A serial port is missing, taken, forbidden, or left during use.
+    """A serial port is missing, in use, forbidden, or disconnected during use.
 
     ``cause`` is one word for it: "missing", "busy", "permission", "url", "refused", "settings", "left", "silent" or
     "failed".
@@ -131,7 +131,7 @@ class PortError(PaddleError):
 
 
 class LinkError(PaddleError):
-    """A board does not answer, refuses what was asked, or speaks another version.
+    """A board does not answer, rejects a request, or uses a different protocol version.
 
     ``result`` is the board's own word for a refusal, a name in hapticlab.device.link.messages.RESULTS, else None.
     """
@@ -142,11 +142,11 @@ class LinkError(PaddleError):
 
 
 class AnalysisError(HapticlabError, ValueError):
-    """A record or a model does not allow the question asked of it."""
+    """A record or a model does not allow the requested analysis."""
 
 
 class CourseError(HapticlabError, ValueError):
-    """A lab, an exercise or a folder of labs is not as it is meant to be."""
+    """A lab, an exercise or a folder of labs is not valid."""
 
 
 class EngineMissingError(HapticlabError, ImportError):

@@ -63,12 +63,12 @@ class Found(dict[str, str]):
 
 
 def find(words: str = "") -> Found:
-    """Public names whose own or whose first line holds every one of the words; where none does, whose description does.
+    """Find public names by words in the name or in its first line, or, if there is none, in its description.
 
     Parameters
     ----------
     words : str
-        One word or more, such as "velocity" or "largest stiffness"; none lists every public name.
+        One or more words, such as "velocity" or "largest stiffness"; without a word every public name is listed.
 
     Returns
     -------

@@ -94,7 +94,7 @@ class PaddleProfile(ShowsItself):
 
 @dataclass(frozen=True, eq=False)
 class Telemetry(ShowsItself):
-    """What a paddle recorded, one row a sample.
+    """The record of a run of a paddle, one row per sample.
 
     Attributes
     ----------
@@ -105,8 +105,9 @@ class Telemetry(ShowsItself):
         Sampling period and computational delay [s].
     channels : dict of str to array
         Watched states and, where they differ from what was sensed or commanded, ``x_true``, ``v_true``, ``F_applied``
-        and ``x_switch``. Each is also an attribute: ``log.z``. Where events are located inside the period that begins with
-        a sample: ``unlocated``, steps that left one out, and ``overlap``, how deep bodies are inside each other at its end.
+        and ``x_switch``. Each is also an attribute: ``log.z``. Where events are located inside the period that begins
+        with a sample: ``unlocated``, steps that left one out, and ``overlap``, how deep bodies are inside each other at
+        its end.
     units : dict of str to str
     paddle, scene : str
     parameters : dict of str to float
@@ -264,7 +265,7 @@ class Telemetry(ShowsItself):
 
     @classmethod
     def load(cls, path: File) -> Telemetry:
-        """Read what :meth:`save` wrote; the file can hold numbers and text only, never code."""
+        """Read a file that :meth:`save` wrote; it can contain only numbers and text, never code."""
         try:
             with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
                 about = json.loads(str(file["about"]))

@@ -61,10 +61,10 @@ class CheckResult:
 
 
 def check(name: str, answer: object) -> CheckResult:
-    """Check an answer by the public cases of its exercise; shows a card, and never raises.
+    """Check an answer with the public cases of its exercise and show a card; no error is raised.
 
-    In a notebook the card is HTML, and the exercises that are right are remembered in a file beside the notebook, which
-    counts for no mark; elsewhere it is printed.
+    In a notebook the card is HTML, and the exercises that are right are recorded in a file next to the notebook, which
+    counts for no mark. Outside a notebook the card is printed.
 
     Parameters
     ----------

@@ -31,9 +31,9 @@ _WHY = {
 
 @dataclass(frozen=True, kw_only=True)
 class Device(ShowsItself):
-    """The numbers of a paddle, for a limit or a bound where no paddle is at hand.
+    """The constants of a device, for a limit or a bound, without a paddle that runs.
 
-    A limit asks for the numbers that it depends on, and refuses in words where one is missing.
+    A limit uses the constants that it depends on, and raises an error that names a missing one.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Device(ShowsItself):
     Raises
     ------
     PaddleError
-        For a value that is no number, or out of its range.
+        For a value that is not a number or is out of its range.
 
     Examples
     --------

@@ -149,10 +149,10 @@ def fitts(
     reaction: float = REACTION,
     seed: int = 0,
 ) -> Fitts:
-    """Let a simulated hand move to and fro between targets at x = 0 and x = distance, with a scene on the handle.
+    """Let a simulated hand move back and forth between targets at x = 0 and x = distance, with a scene on the handle.
 
-    The hand makes :class:`~hapticlab.experiments.submovements.Submovements`: it aims, sees a reaction time later where it
-    is, and corrects where it missed. It expects an empty handle: what a scene adds is met by correction.
+    The hand makes :class:`~hapticlab.experiments.submovements.Submovements`: it aims, sees a reaction time later where
+    it is, and corrects where it missed. It expects an empty handle: what a scene adds is met by correction.
 
     Parameters
     ----------
@@ -220,9 +220,9 @@ def _between(paddle, scene, distance, width, movements, scatter, reaction, seed)
 def selections(t, x, distance, width):
     """(time entered for good, time set out, end beside the centre along the movement) of targets reached in turn.
 
-    The first is the target at x = 0, then that at x = distance, and so on. A target is selected once the handle has been
-    in it for :data:`DWELL`; the end is the mean place over that time. The handle sets out from it where it last was slower
-    than :data:`ONSET` of its fastest on the way to leave.
+    The first is the target at x = 0, then that at x = distance, and so on. A target is selected once the handle has
+    been in it for :data:`DWELL`; the end is the mean place over that time. The handle sets out from it where it last
+    was slower than :data:`ONSET` of its fastest on the way to leave.
     """
     found, at, side, dwell = [], 0, 0, round(DWELL / (t[1] - t[0]))
     speed = np.abs(np.gradient(x, t[1] - t[0]))

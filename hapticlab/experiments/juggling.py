@@ -91,7 +91,7 @@ class Juggle(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Perception(ShowsItself):
-    """How sharply a person sees and feels, and how late.
+    """The precision and the delay of a person's sight and touch.
 
     Parameters
     ----------
@@ -135,20 +135,21 @@ def juggle(
     """Let a simulated juggler keep a ball up on a simulated paddle, by sight, by touch, by both, or by neither.
 
     The juggler strikes once a flight, slowing down at impact, and plans each stroke from where and when the ball will
-    come down; nothing is known before a reaction time has gone by. Sight gives the ball's place 60 times a second, blurred.
-    Touch gives the instant of the felt impact, where the handle was, and the impulse, within a Weber fraction: by touch
-    alone the eyes are closed. By sight alone the motor is off: the ball bounces on the screen and is not felt.
+    come down; nothing is known before a reaction time has gone by. Sight gives the ball's place 60 times a second,
+    blurred. Touch gives the instant of the felt impact, where the handle was, and the impulse, within a Weber fraction:
+    by touch alone the eyes are closed. By sight alone the motor is off: the ball bounces on the screen and is not felt.
 
     S. Schaal, D. Sternad and C. G. Atkeson, *J. Motor Behavior* 28 (1996) 165, on people: touch alone is much better
     than sight alone, and almost as good as both. What holds for this juggler depends on the ``perception``, whose
-    numbers are illustrative. With them and a slowing stroke each sense keeps the ball, and so does neither. With a stroke that
-    speeds up by 2 m/s^2 at impact, at 0.2 m and with 0.5 N of noise in the hand, sight alone loses it, touch alone keeps
-    it in one run of two, both keep it within 7 % rms (tests/benchmarks/experiments.py).
+    numbers are illustrative. With them and a slowing stroke each sense keeps the ball, and so does neither. With a
+    stroke that speeds up by 2 m/s^2 at impact, at 0.2 m and with 0.5 N of noise in the hand, sight alone loses it,
+    touch alone keeps it in one run of two, both keep it within 7 % rms (tests/benchmarks/experiments.py).
 
-    Without looking, a stroke that speeds up at impact does not lose the ball either, though :func:`multipliers` calls that
-    impact unstable: the impacts leave it, within some ten flights, for the later moment at which the same stroke passes the
-    same speed while it slows down, and stay there (for 2 m/s^2: 38 ms late, 13 mm higher, at -1.7 m/s^2). One stroke a
-    flight has two such moments, one unstable and one stable. The heights, taken from where the ball is struck, are the same.
+    Without looking, a stroke that speeds up at impact does not lose the ball either, though :func:`multipliers` calls
+    that impact unstable: the impacts leave it, within some ten flights, for the later moment at which the same stroke
+    passes the same speed while it slows down, and stay there (for 2 m/s^2: 38 ms late, 13 mm higher, at -1.7 m/s^2).
+    One stroke a flight has two such moments, one unstable and one stable. The heights, taken from where the ball is
+    struck, are the same.
 
     Parameters
     ----------
@@ -161,8 +162,8 @@ def juggle(
     duration : float
         [s]
     acceleration : float
-        Of the plate at impact that strokes aim at [m/s^2]; :func:`multipliers` says for which a juggle is stable without
-        looking.
+        Of the plate at impact that strokes aim at [m/s^2]; :func:`multipliers` says for which a juggle is stable
+        without looking.
     perception : Perception
         How sharp the senses are, and how late: ``hl.people.Perception(vision=, touch=, reaction=)``.
     seed : int
@@ -215,9 +216,9 @@ def multipliers(acceleration: float, *, e: float, g: float = 9.81, m: float = 0.
     """Factors by which a small error grows from one flight to the next if the stroke takes no notice of it.
 
     The eigenvalues of the map from one impact to the next, for a plate that passes the place of impact each period with
-    this acceleration. Below one in magnitude, the juggle is stable without looking: for
-    -2 g (1 + e^2)/(1 + e)^2 < acceleration < 0; S. Schaal, D. Sternad and C. G. Atkeson, *J. Motor Behavior* 28 (1996) 165.
-    It is about this impact alone: a juggle that leaves it may settle where the same plate slows down.
+    this acceleration. Below one in magnitude, the juggle is stable without looking: for -2 g (1 + e^2)/(1 + e)^2 <
+    acceleration < 0; S. Schaal, D. Sternad and C. G. Atkeson, *J. Motor Behavior* 28 (1996) 165. It is about this
+    impact alone: a juggle that leaves it may settle where the same plate slows down.
 
     Parameters
     ----------

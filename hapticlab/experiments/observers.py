@@ -65,7 +65,7 @@ class SimulatedObserver(ShowsItself):
         return Psychometric(math.log1p(self.weber), 1.0, 0.5, self.lapse / 2)
 
     def ready(self, task: Task, which: Answer) -> None:
-        """Be told that the first or second presentation comes."""
+        """Announce the first or second presentation."""
 
     def compare(self, task: Task, logs: Sequence[Telemetry], trial: int) -> Answer:
         """The answer: "first" or "second", whichever felt stronger in these two records."""
@@ -82,7 +82,7 @@ class SimulatedObserver(ShowsItself):
         return "first" if first > second + self.bias else "second"
 
     def told(self, right: bool) -> None:
-        """Hear whether the answer was right."""
+        """Report whether the answer was right."""
 
     def __str__(self) -> str:
         return f"simulated observer, Weber fraction {100 * self.weber:g} %, {100 * self.lapse:g} % lapses, seed {self.seed}"

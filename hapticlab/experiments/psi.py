@@ -62,7 +62,8 @@ class Psi(ShowsItself):
     low, high : float
         Levels that may be asked, and thresholds that are thought possible, equally likely in their logarithm.
     grid : Grid
-        How many levels and thresholds between them, and which slopes: ``hl.people.Grid(levels=, thresholds=, slopes=)``.
+        How many levels and thresholds between them, and which slopes: ``hl.people.Grid(levels=, thresholds=,
+        slopes=)``.
     lapse : float
         Taken as known, 0 <= lapse < 1 - guess; a small one keeps a single slip from ruling out the truth.
     guess : float
@@ -137,11 +138,11 @@ class Psi(ShowsItself):
         self.belief, self.told = belief / belief.sum(), self.told + 1
 
     def estimate(self) -> float:
-        """The threshold: the mean of its logarithm over what is believed."""
+        """The threshold estimate, from the mean of its logarithm over the posterior."""
         return float(np.exp(self.belief.sum(1) @ np.log(self.thresholds)))
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
-        """Thresholds between which this part of the belief lies, as much of the rest on either side."""
+        """Thresholds between which this fraction of the posterior lies, with equal tails."""
         mass = np.cumsum(self.belief.sum(1)) - self.belief.sum(1) / 2
         tail = (1 - confidence) / 2
         low, high = np.interp([tail, 1 - tail], mass, np.log(self.thresholds))
@@ -152,7 +153,7 @@ class Psi(ShowsItself):
 
 
 class ConstantLevels(ShowsItself):
-    """Method of constant stimuli: each level so many times, in an order drawn from the seed.
+    """Method of constant stimuli: each level a number of times, in an order drawn from the seed.
 
     Examples
     --------
@@ -177,7 +178,7 @@ class ConstantLevels(ShowsItself):
         return self.order[self.told]
 
     def answer(self, right: bool) -> None:
-        """Take an answer; it changes nothing of what comes next."""
+        """Record an answer, which does not affect the next levels."""
         self.told += 1
 
     def __str__(self) -> str:

@@ -42,8 +42,8 @@ class PsychometricFit(ShowsItself):
     deviance : float
         2 log of the likelihood ratio between a free proportion at each level and the curve.
     p_deviance : float
-        Part of bootstrap samples with a larger deviance; below 0.05 the curve does not fit, above 0.95 it fits too well.
-        With single trials at most levels, as an adaptive procedure leaves them, it says little.
+        Part of bootstrap samples with a larger deviance; below 0.05 the curve does not fit, above 0.95 it fits too
+        well. With single trials at most levels, as an adaptive procedure leaves them, it says little.
     notes : tuple of str
     """
 
@@ -90,7 +90,7 @@ class PsychometricFit(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Intervals(ShowsItself):
-    """How sure the intervals of a fit are, and by how many samples drawn of it.
+    """The confidence of the intervals of a fit, and the number of bootstrap samples.
 
     Parameters
     ----------
@@ -138,12 +138,13 @@ def psychometric(
 
     F. A. Wichmann and N. J. Hill, *Perception & Psychophysics* 63 (2001) 1293 and 1314: the lapses are fitted beside
     threshold and slope, and the goodness of fit comes from samples drawn of the fitted curve. These treat the levels as
-    fixed also where a procedure placed them by the answers. The intervals are those of the likelihood's ratio: each value of
-    the threshold for which some slope and lapses explain the answers nearly as well as the best, and the same for the slope.
-    How nearly, samples of the fitted curve say, or chi-squared of one degree of freedom, whichever is wider; with fewer than
-    100 samples chi-squared alone. At seven levels of 40 trials 95 % intervals hold each in 95 % of 799 sets, by chi-squared
-    alone in 94 %; at levels of 10 trials the slope in about 90 % either way. The likelihood does not depend on how levels
-    were placed, and answers that are all right above a level and all wrong below leave the threshold anywhere in between.
+    fixed also where a procedure placed them by the answers. The intervals are those of the likelihood's ratio: each
+    value of the threshold for which some slope and lapses explain the answers nearly as well as the best, and the same
+    for the slope. How nearly, samples of the fitted curve say, or chi-squared of one degree of freedom, whichever is
+    wider; with fewer than 100 samples chi-squared alone. At seven levels of 40 trials 95 % intervals hold each in 95 %
+    of 799 sets, by chi-squared alone in 94 %; at levels of 10 trials the slope in about 90 % either way. The likelihood
+    does not depend on how levels were placed, and answers that are all right above a level and all wrong below leave
+    the threshold anywhere in between.
 
     Parameters
     ----------

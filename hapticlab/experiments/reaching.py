@@ -47,7 +47,7 @@ class Path(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Load(ShowsItself):
-    """What a person believes to move, beside their own hand.
+    """The load that a person expects, in addition to their own hand.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Load(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Control(ShowsItself):
-    """By what a person moves a handle: by knowing the load, by looking, or by both.
+    """The control by which a person moves a handle: by knowing the load, by feedback, or by both.
 
     Parameters
     ----------
@@ -84,8 +84,8 @@ class Control(ShowsItself):
     expects : Load, optional
         What the person believes to move; by default the paddle alone, with nothing rendered.
     gain : float or text, optional
-        [1/s]; by default 1/(e (reaction + 10 ms)), the fastest without overshoot for a handle that follows its intent at
-        once. Such a loop is unstable from about pi/(2 reaction) on, 8.3 1/s with the chapter's 180 ms.
+        [1/s]; by default 1/(e (reaction + 10 ms)), the fastest without overshoot for a handle that follows its intent
+        at once. Such a loop is unstable from about pi/(2 reaction) on, 8.3 1/s with the chapter's 180 ms.
     reaction : float or text
         Time [s] until what is seen changes what is done.
     tremor : callable, optional
@@ -175,8 +175,8 @@ def reach(
     """Let the hand of a simulated paddle reach for a target, smoothly, from x = 0.
 
     "anticipatory" sends the intent that would move hand and expected load along a path of minimum jerk, and looks at
-    nothing: exact where the expectation is right, too far where the suitcase was empty. "feedback" sees path and handle a
-    reaction time late and moves the intent by a ``gain`` times their distance, per second. "both" does the first, and
+    nothing: exact where the expectation is right, too far where the suitcase was empty. "feedback" sees path and handle
+    a reaction time late and moves the intent by a ``gain`` times their distance, per second. "both" does the first, and
     corrects by the second.
 
     Parameters
@@ -236,13 +236,13 @@ def follow(
     control: Control = CONTROL,
     **options: Any,
 ) -> tuple[Telemetry, Array]:
-    """Let the hand of a simulated paddle follow a path; return (Telemetry, where the handle was meant to be [m]).
+    """Let the hand of a simulated paddle follow a path; return (Telemetry, target position of the handle [m]).
 
     Parameters
     ----------
     path : object with ``at(t)`` that returns position [m], velocity [m/s], acceleration [m/s^2]
-        ``hl.people.MinimumJerk`` or an :class:`~hapticlab.analysis.accuracy.handle_motions.HandleMotion`. The others are those
-        of :func:`reach`.
+        ``hl.people.MinimumJerk`` or an :class:`~hapticlab.analysis.accuracy.handle_motions.HandleMotion`. The others
+        are those of :func:`reach`.
     """
     hand = check_held(paddle, "reach")
     check_path(path)

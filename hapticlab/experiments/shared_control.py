@@ -105,10 +105,11 @@ def assistance(
     band: tuple[float, float] = BAND,
     **options: Any,
 ) -> Assistance:
-    """Let a hand follow a path alone and with every scene, its intent the same throughout, and measure.
+    """Let a hand follow a path without and with each scene, with the same intent, and measure.
 
-    The intent is the one that would move hand and bare handle along the path (:func:`~hapticlab.experiments.reaching.follow`),
-    with the tremor added: what the hand does is not adapted to what it feels.
+    The intent is the one that would move hand and bare handle along the path
+    (:func:`~hapticlab.experiments.reaching.follow`), with the tremor added: what the hand does is not adapted to what
+    it feels.
 
     Parameters
     ----------

@@ -94,7 +94,7 @@ class Task(ShowsItself):
 
 
 def stiffness_task(*, standard: float = 200.0, press: float = 0.015) -> Task:
-    """Tell two walls apart by their stiffness, pressed twice a second.
+    """Distinguish two walls by their stiffness, pressed twice per second.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def stiffness_task(*, standard: float = 200.0, press: float = 0.015) -> Task:
 
 
 def damping_task(*, standard: float = 5.0, stroke: float = 0.02) -> Task:
-    """Tell two viscous media apart, moved through to and fro.
+    """Distinguish two viscous media by moving back and forth.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def damping_task(*, standard: float = 5.0, stroke: float = 0.02) -> Task:
 
 
 def texture_task(*, standard: float = 0.15, pitch: float = 0.003, stroke: float = 0.02) -> Task:
-    """Tell two gratings apart by their roughness, stroked to and fro.
+    """Distinguish two gratings by their roughness, stroked back and forth.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ ENOUGH = 20
 
 @dataclass(frozen=True, kw_only=True)
 class Levels(ShowsItself):
-    """The lowest and the highest level that a staircase may ask.
+    """The lowest and the highest level that a staircase can present.
 
     Parameters
     ----------
@@ -72,8 +72,8 @@ class UpDown(ShowsItself):
     most_trials : int
         Trials after which it ends at the latest.
     levels : Levels
-        What may be asked, ``hl.people.Levels(low=, high=)``. It ends after 20 answers in a row that are all right at the lowest
-        level, or all wrong at the highest.
+        What may be asked, ``hl.people.Levels(low=, high=)``. It ends after 20 answers in a row that are all right at
+        the lowest level, or all wrong at the highest.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class UpDown(ShowsItself):
 
     @property
     def target(self) -> float:
-        """The proportion of right answers it goes towards."""
+        """The proportion of right answers towards which the staircase goes."""
         return (self.weight / (1 + self.weight)) ** (1 / self.down)
 
     @property
@@ -134,7 +134,7 @@ class UpDown(ShowsItself):
         return len(self.turned) >= self.reversals or self.gave_up is not None
 
     def answer(self, right: bool) -> None:
-        """Take an answer at this level and set the next."""
+        """Record an answer at this level and set the next level."""
         self.told += 1
         self._at_end = self._at_end + 1 if self.level == (self.low if right else self.high) else 0
         self._step(right)
@@ -169,7 +169,7 @@ class UpDown(ShowsItself):
         return math.exp(float(np.mean(np.log(used))))
 
     def settles(self, curve: Psychometric, per_step: int = 1, most: int = 400) -> float:
-        """The level a long staircase turns about for an observer of this psychometric function.
+        """The level at which a long staircase settles for an observer with this psychometric function.
 
         The staircase is a Markov chain over levels and right answers in a row; this is the geometric mean of the levels
         at which its stationary run turns, exact where ``weight`` is a multiple of 1/per_step.

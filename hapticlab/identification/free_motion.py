@@ -19,7 +19,7 @@ CURE = "Record, flick the handle harder, release it while it moves, and let it c
 
 
 def coasting(log: Telemetry | None) -> Telemetry:
-    """The part of a recording in which the free handle coasts: from where it is fastest to the end, x rising from 0.
+    """The part of a recording in which the free handle coasts, from its fastest point to the end, with x rising from 0.
 
     Of a recording of ``hl.live`` it takes the longest part in which no hand holds the handle.
 

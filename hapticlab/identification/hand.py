@@ -68,10 +68,10 @@ def identify_hand(
     counts_per_metre: float | None = None,
     confidence: float = 0.95,
 ) -> HandFit:
-    """The second-order hand on a handle from its answers to pushes, each before the hand can react.
+    """The second-order model of the hand on a handle, from its responses to pushes, each before the hand can react.
 
-    (m_device + m) x'' = -F - b_device x' - coulomb sign(x') - b x' - k (x - rest). Valid for some 30 to 60 ms after each
-    push: then reflexes, later intent, and the hand is another one. ``explained`` says whether the model does.
+    (m_device + m) x'' = -F - b_device x' - coulomb sign(x') - b x' - k (x - rest). Valid for some 30 to 60 ms after
+    each push: then reflexes, later intent, and the hand is another one. ``explained`` says whether the model does.
 
     Parameters
     ----------

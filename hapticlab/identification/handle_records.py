@@ -34,7 +34,7 @@ FORCE_CONSTANT = (
 
 @dataclass(frozen=True, eq=False)
 class HandleRecord(ShowsItself):
-    """A record of a free handle, and what is known to have been beside it.
+    """A record of a free handle, with known added masses and forces.
 
     Attributes
     ----------
@@ -163,7 +163,7 @@ def chirp_response(
     at_rest: bool = True,
     confidence: float = 0.95,
 ) -> PaddleFit:
-    """Mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step_response`."""
+    """Mass, damping, Coulomb friction and delay from a force of rising frequency; as :func:`step_response`."""
     check_record(log, "chirp_response")
     changes = np.count_nonzero(np.diff(log.F))
     if changes <= len(log) / 4:
@@ -182,12 +182,12 @@ def identify(
     confidence: float = 0.95,
     near: PaddleFit | None = None,
 ) -> PaddleFit:
-    """A paddle's constants from records of its free handle, all of them together, by maximum likelihood.
+    """Constants of a paddle from all records of its free handle together, by maximum likelihood.
 
-    (m + added) x'' = push - scale F - b x' - coulomb sign(x'), F[n] held over [n T + delay, (n+1) T + delay).
-    Of 395 random paddles (5 g to 0.5 kg, 0.01 to 2 N s/m, 0 to 0.3 N, 0 to 3 T; noise, counts in dither and without) that
-    hl.identify.paddle moved none was refused, and the 95 % intervals held 94.9 % of the masses, 96.5 % of the dampings, 95.2 %
-    of the frictions and delays. They hold less often where a chirp spends half of its force on friction or more.
+    (m + added) x'' = push - scale F - b x' - coulomb sign(x'), F[n] held over [n T + delay, (n+1) T + delay). Of 395
+    random paddles (5 g to 0.5 kg, 0.01 to 2 N s/m, 0 to 0.3 N, 0 to 3 T; noise, counts in dither and without) that
+    hl.identify.paddle moved none was refused, and the 95 % intervals held 94.9 % of the masses, 96.5 % of the dampings,
+    95.2 % of the frictions and delays. They hold less often where a chirp spends half of its force on friction or more.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ STILL, QUIET = 2.5, 0.4
 
 
 def push_hand(paddle: SimulatedPaddle | SerialPaddle, *, force: float = FORCE, pushes: int = 8, seed: int = 0) -> Telemetry:
-    """Push a hand that holds the handle, at times and in directions it cannot foresee, and return the record.
+    """Push a hand that holds the handle, at unpredictable times and in unpredictable directions, and return the record.
 
     Further than 30 mm from where it began, or faster than 1 m/s, the motor is off for good. On a board an eighth, a
     quarter and half of the force are tried before, until the handle comes back: a free one is not pushed harder.

@@ -87,9 +87,9 @@ def abbott_okamura_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "z
 def diolaiti_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
     """Largest stiffness of the passive region of Diolaiti et al. (2006): b/(K T) >= 1/2 + delay/T and f_c/(K Delta) >= 1/2.
 
-    With a whole number of periods of delay the first is exact. With a fraction it is what slow sinusoids ask for, and up
-    to 8 % above what every motion allows (:func:`~hapticlab.limits.passivity.passivity_limit`): its kind then says that it
-    is no passivity limit.
+    With a whole number of periods of delay the first is exact. With a fraction it is what slow sinusoids ask for, and
+    up to 8 % above what every motion allows (:func:`~hapticlab.limits.passivity.passivity_limit`): its kind then says
+    that it is no passivity limit.
 
     Parameters
     ----------
@@ -122,15 +122,16 @@ def diolaiti_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -
 class DiolaitiPoint(ShowsItself):
     """One plain wall in the plane of Diolaiti et al. (2006): damping against the hold, Coulomb friction against the encoder.
 
-    In a cycle of amplitude X at w the hold and the delay generate ``(1/2 + delay/T - beta) K T w X^2 pi`` more than damping
-    dissipates, the encoder at most the work of one count each way, and friction dissipates ``4 f_c X``. So large motions
-    die away if beta >= 1/2 + delay/T, and small motions if sigma >= 1/2. The four combinations are the regions.
-    They are regions of slow sinusoids: with a delay of a fraction of a period a wall with both may still not be passive.
+    In a cycle of amplitude X at w the hold and the delay generate ``(1/2 + delay/T - beta) K T w X^2 pi`` more than
+    damping dissipates, the encoder at most the work of one count each way, and friction dissipates ``4 f_c X``. So
+    large motions die away if beta >= 1/2 + delay/T, and small motions if sigma >= 1/2. The four combinations are the
+    regions. They are regions of slow sinusoids: with a delay of a fraction of a period a wall with both may still not
+    be passive.
 
     With neither, the encoder's errors along a motion of many counts average out, and friction decides: a motion below
-    ``amplitude`` dies away, to rest or to a buzz of about a count, and a larger one grows. This holds if the amplitude is at
-    least 4 counts. In simulations of 114 such walls in contact, with w T from 0.02 to 0.25 and delays of up to one period, all
-    motions of 0.8 of the amplitude died away, and all but one of 1.25 of it grew.
+    ``amplitude`` dies away, to rest or to a buzz of about a count, and a larger one grows. This holds if the amplitude
+    is at least 4 counts. In simulations of 114 such walls in contact, with w T from 0.02 to 0.25 and delays of up to
+    one period, all motions of 0.8 of the amplitude died away, and all but one of 1.25 of it grew.
 
     Attributes
     ----------
@@ -140,8 +141,9 @@ class DiolaitiPoint(ShowsItself):
         delay/T
     region : str
     amplitude : float
-        Of a sinusoid at the natural frequency [m], in contact, above which the motion grows: ``4 f_c/(pi w (K (T/2 + delay) -
-        b))``, by its describing function. inf where beta is large enough, 0 without friction; nan without a mass.
+        Of a sinusoid at the natural frequency [m], in contact, above which the motion grows: ``4 f_c/(pi w (K (T/2 +
+        delay) - b))``, by its describing function. inf where beta is large enough, 0 without friction; nan without a
+        mass.
     """
 
     beta: float
@@ -165,8 +167,8 @@ def diolaiti(device: AnyDevice, *, K: float) -> DiolaitiPoint:
     Parameters
     ----------
     device : Device or paddle
-        Its b, T, delay, coulomb and counts_per_metre are read; and where it has one its m, with that of its hand, for the
-        amplitude above which a locally stable wall grows.
+        Its b, T, delay, coulomb and counts_per_metre are read; and where it has one its m, with that of its hand, for
+        the amplitude above which a locally stable wall grows.
     K : float
         Stiffness [N/m], > 0.
 
@@ -178,7 +180,8 @@ def diolaiti(device: AnyDevice, *, K: float) -> DiolaitiPoint:
     --------
     >>> import hapticlab as hl
     >>> print(diolaiti(hl.Device(m=0.05, b=0.1, T="1 ms", coulomb=0.05, counts_per_metre=5000), K=300))
-    beta = b/(K T) = 0.3333, sigma = f_c/(K Delta) = 0.8333: locally stable: comes to rest from small motions, large ones grow; \
+    beta = b/(K T) = 0.3333, sigma = f_c/(K Delta) = 0.8333: locally stable: comes to rest from small motions, large
+    ones grow; \
 motions above 16.44 mm grow
     """
     b, T, delay, coulomb, counts, hand, m = known(device, *TWO_MODES, "hand", or_none="m")
@@ -202,9 +205,9 @@ def gil_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Lim
     """Largest stable stiffness to first order in the delay, K < (b + B)/(T/2 + delay) (Gil et al. 2004, 2009).
 
     A stability claim for one plant, not a passivity claim; damping of the hand counts with the device's. It holds where
-    ``e = ((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B)`` is small, with ``tau = T/2 + delay``: it differs from the exact
-    limit by up to 1.7 e, to either side, so it is no bound in the strict sense. The last factor is 1 for B >= 0; a negative
-    damper leaves little of b, and what the formula neglects stays.
+    ``e = ((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B)`` is small, with ``tau = T/2 + delay``: it differs from the
+    exact limit by up to 1.7 e, to either side, so it is no bound in the strict sense. The last factor is 1 for B >= 0;
+    a negative damper leaves little of b, and what the formula neglects stays.
 
     Parameters
     ----------
@@ -288,14 +291,15 @@ class Bounds(Tabular):
 
 
 def bounds(device: AnyDevice, *, law: LawName = "zoh", B: float = 0.0) -> Bounds:
-    """Return every named bound on the stiffness of a wall beside the exact limit of this paddle's stability.
+    """Return every named bound on the stiffness of a wall, and the exact stability limit of this paddle.
 
     Parameters
     ----------
     device : Device or paddle
         Its m, b, T, delay, coulomb, counts_per_metre and hand are read.
     law : {"zoh", "half_sample", "backward_difference", "ellis"}
-        Where the paddle estimates its velocity by backward difference, half_sample is backward_difference, in every row.
+        Where the paddle estimates its velocity by backward difference, half_sample is backward_difference, in every
+        row.
     B : float
         Virtual damper of either sign [N s/m].
 

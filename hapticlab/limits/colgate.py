@@ -12,9 +12,10 @@ sinusoid feels the held force as a damper of its own,
 negative where the law makes energy. The two are one below a tenth of the sampling rate; near Nyquist the straight lines
 ask for up to pi^2/4 of what the sinusoid asks for.
 
-Averaged over theta from 0 to pi the right side is ``K T/2``, with K = H(1) the stiffness at rest, for every stable law and
-every delay of whole periods: of ``z^-k`` it is Dirichlet's kernel, whose mean is one. A law that asks for less somewhere asks
-for more elsewhere, so none is passive with K > 2 b/T, and without delay nothing is better than the plain spring, Eq. (23.1).
+Averaged over theta from 0 to pi the right side is ``K T/2``, with K = H(1) the stiffness at rest, for every stable law
+and every delay of whole periods: of ``z^-k`` it is Dirichlet's kernel, whose mean is one. A law that asks for less
+somewhere asks for more elsewhere, so none is passive with K > 2 b/T, and without delay nothing is better than the plain
+spring, Eq. (23.1).
 """
 
 from __future__ import annotations
@@ -110,8 +111,8 @@ class PassivityMargin(ShowsItself):
 def passivity_margin(device: AnyDevice, law: LinearLaw) -> PassivityMargin:
     """Passivity of a linear law on a device of damping b, frequency by frequency (Colgate and Schenkel 1997).
 
-    Necessary and sufficient for a law that always acts; for a unilateral wall it says nothing about the switching, except
-    for the plain law of Eq. (23.1) without delay.
+    Necessary and sufficient for a law that always acts; for a unilateral wall it says nothing about the switching,
+    except for the plain law of Eq. (23.1) without delay.
 
     Parameters
     ----------
@@ -150,7 +151,7 @@ def passivity_margin(device: AnyDevice, law: LinearLaw) -> PassivityMargin:
 
 
 def equivalent_damper(device: AnyDevice, law: LinearLaw, theta: ArrayLike) -> Array:
-    """Return the damper [N s/m] as which a sinusoid x of theta = w T > 0 feels a held law, past Nyquist too.
+    """Return the equivalent damper [N s/m] of a held law for a sinusoid x at theta = w T > 0, also above Nyquist.
 
     The part of the held force in phase with the velocity, over the velocity: at whole multiples of theta = pi averaged
     over the phase between motion and samples. Of the device the delay is read; its T must be that of the law.
@@ -213,8 +214,8 @@ def largest_passive_stiffness(law: Callable[[float], LinearLaw], *, b: float, de
 
     ``frequency`` is 0.0 for slow motion and None where every frequency asks alike.
 
-    What one frequency asks for is convex in K, so the K that satisfies the worst frequency of one K is an upper bound, and
-    the sequence of such cuts falls to the answer. K = 0 where the law is active without its spring: at
+    What one frequency asks for is convex in K, so the K that satisfies the worst frequency of one K is an upper bound,
+    and the sequence of such cuts falls to the answer. K = 0 where the law is active without its spring: at
     :func:`least_passive_stiffness`, below which a constant negative stiffness beside K is left.
 
     Parameters

@@ -1,21 +1,21 @@
 """Excess and shortage of passivity of device, hold, delay and environment, as one ledger (after Miller, Colgate, Freeman).
 
-With velocity in and force out a part is *input-strictly* passive with index nu where ``int F v >= nu int v^2`` less what
-was stored; with force in and velocity out *output-strictly* passive with index eps where ``int F v >= eps int v^2``. Both
-are dampers in N s/m, and joined at the handle they add: a device whose eps exceeds the shortage -nu of what is rendered
-leaves a handle that is passive in every passive hand. The index is per velocity of the handle, so that over a period
-``int v^2 >= D^2/T``, D its displacement: that is all which the samples know.
+With velocity in and force out a part is *input-strictly* passive with index nu where ``int F v >= nu int v^2`` less
+what was stored; with force in and velocity out *output-strictly* passive with index eps where ``int F v >= eps int
+v^2``. Both are dampers in N s/m, and joined at the handle they add: a device whose eps exceeds the shortage -nu of what
+is rendered leaves a handle that is passive in every passive hand. The index is per velocity of the handle, so that over
+a period ``int v^2 >= D^2/T``, D its displacement: that is all which the samples know.
 
-How much the parts are short, each from Lipschitz's inequality alone and so for nonlinear ones too. A force F = U'(x) with
-slopes from k_min to k_max, held: U(x + D) - U(x) <= U'(x) D + k_max D^2/2, hence a shortage of k_max T/2, whatever k_min
-is, as long as U is bounded below. A sample of delay pairs the force with a displacement further on: |F(n) - F(n-1)| <=
-k |D(n)| with k = max(|k_min|, |k_max|), and sum |D(n) D(n+1)| <= sum D^2, hence k T for each. A damper of slopes up to B,
-of either sign, held: |B|, delayed or not.
+How much the parts are short, each from Lipschitz's inequality alone and so for nonlinear ones too. A force F = U'(x)
+with slopes from k_min to k_max, held: U(x + D) - U(x) <= U'(x) D + k_max D^2/2, hence a shortage of k_max T/2, whatever
+k_min is, as long as U is bounded below. A sample of delay pairs the force with a displacement further on: |F(n) -
+F(n-1)| <= k |D(n)| with k = max(|k_min|, |k_max|), and sum |D(n) D(n+1)| <= sum D^2, hence k T for each. A damper of
+slopes up to B, of either sign, held: |B|, delayed or not.
 
 A delay of d + f periods, 0 < f < 1, changes the force inside the period, and ``int v^2 >= (D1^2/f + D2^2/(1-f))/T`` for
-the displacements before and after. With |D(n-d-1) D1| <= (h D(n-d-1)^2 + D1^2/h)/2 and the best h, the shortage of spring
-and delay together is ``T (a + sqrt(a^2 + f (1-f) k^2))/2`` with a = k_max/2 + k (d + f): more than k_max T/2 + k delay.
-For a linear spring it is exact, and :func:`~hapticlab.limits.passivity.required_damping` finds it another way.
+the displacements before and after. With |D(n-d-1) D1| <= (h D(n-d-1)^2 + D1^2/h)/2 and the best h, the shortage of
+spring and delay together is ``T (a + sqrt(a^2 + f (1-f) k^2))/2`` with a = k_max/2 + k (d + f): more than k_max T/2 + k
+delay. For a linear spring it is exact, and :func:`~hapticlab.limits.passivity.required_damping` finds it another way.
 """
 
 from __future__ import annotations
@@ -134,10 +134,10 @@ def passivity_ledger(
     bounded: bool = False,
     parts: Iterable[tuple[str, float, str]] = (),
 ) -> Ledger:
-    """Excess of passivity of the device, and what hold, delay and environment take of it: Eq. (23.10) as a ledger.
+    """Excess of passivity of the device minus the needs of hold, delay and environment: Eq. (23.10) as a ledger.
 
-    For linear and nonlinear environments, with springs whose local stiffness and dampers whose local damping stay within
-    bounds. Sufficient, and exact for a linear spring.
+    For linear and nonlinear environments, with springs whose local stiffness and dampers whose local damping stay
+    within bounds. Sufficient, and exact for a linear spring.
 
     Parameters
     ----------
@@ -150,12 +150,14 @@ def passivity_ledger(
     B : float, or (B_min, B_max)
         Virtual damping [N s/m] by backward difference, of either sign, or the range of its local damping.
     delayed : bool
-        The environment answers a sample late: the force of sample n comes from x(n-1), as an explicit integrator's does.
+        The environment answers a sample late: the force of sample n comes from x(n-1), as an explicit integrator's
+        does.
     bounded : bool
         The potential energy of the environment, the work of F(x) from anywhere, has a lower bound. No range of slopes
         tells; where a slope may be negative nothing is proved without it.
     parts : sequence of (name, index [N s/m], reason)
-        What else is in the loop, such as a physical damper added to the device, or a part whose need was found elsewhere.
+        What else is in the loop, such as a physical damper added to the device, or a part whose need was found
+        elsewhere.
 
     Returns
     -------
@@ -164,8 +166,8 @@ def passivity_ledger(
     Raises
     ------
     AnalysisError
-        Also where no slope is positive and some are negative: such an energy has no lower bound, and no damping keeps the
-        handle.
+        Also where no slope is positive and some are negative: such an energy has no lower bound, and no damping keeps
+        the handle.
 
     Examples
     --------

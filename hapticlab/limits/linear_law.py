@@ -32,9 +32,9 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class LinearLaw(ShowsItself):
-    """A force that is a linear function of the positions sampled so far, H(z): what the bounds of a law are read from.
+    """A force that is a linear function of the positions sampled so far, H(z), from which bounds are computed.
 
-    A law that looks at an exact velocity, Eq. (23.3), has no H(z) in position and cannot be one.
+    A law that uses an exact velocity, Eq. (23.3), has no H(z) in position and is not a LinearLaw.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class LinearLaw(ShowsItself):
         velocity_filter: float | None = None,
         filtered: bool = False,
     ) -> LinearLaw:
-        """Return a law of the chapter with a virtual damper beside it.
+        """Return a law of the chapter with a virtual damper in parallel.
 
         Parameters
         ----------
@@ -102,7 +102,7 @@ class LinearLaw(ShowsItself):
         Raises
         ------
         AnalysisError
-            For "half_sample", which is no position law, an unknown law and values out of range.
+            For "half_sample", which is not a position law, an unknown law and values out of range.
         """
         choice("law", law, TAPS)
         if LEAD[law]:
@@ -157,7 +157,7 @@ class LinearLaw(ShowsItself):
         return cls(*tick_map(compile(scene, T=T, live=(), dtype="float64", **options)), float(T), scene.name)
 
     def plot(self) -> Figure:
-        """Return a figure: the spring and the damper as which slow and fast sinusoids feel the law, the hold included."""
+        """Return a figure of the equivalent spring and damper of the law for slow and fast sinusoids, the hold included."""
         return plot_law(self)
 
     def require_period(self, T: float | None) -> None:
@@ -217,7 +217,7 @@ class LinearLaw(ShowsItself):
 
     @property
     def finite(self) -> bool:
-        """Whether the force forgets a position after some samples."""
+        """Whether the force depends on finitely many past positions."""
         n = len(self.A)
         response = np.abs(self.impulse(2 * n + 1))  # n + 1 terms of zero in a row: all that follow are (Cayley, Hamilton)
         return bool(response[n + 1 :].max(initial=0.0) <= ROUNDING * response.max())
@@ -228,7 +228,7 @@ class LinearLaw(ShowsItself):
         Raises
         ------
         AnalysisError
-            The law remembers for ever, as a filtered velocity does; read :meth:`impulse` or :meth:`at`.
+            The impulse response does not end, as with a filtered velocity; use :meth:`impulse` or :meth:`at`.
         """
         if not self.finite:
             raise AnalysisError(f"{self.name}: its impulse response does not end, so it has no finite taps. Use .impulse(count)")
@@ -238,7 +238,7 @@ class LinearLaw(ShowsItself):
 
     @property
     def stiffness(self) -> float:
-        """Force per displacement at rest [N/m], H(1); nan where a handle at rest feels no one force."""
+        """Force per displacement at rest [N/m], H(1); nan if a handle at rest has no single force."""
         return static_stiffness(self.A, self.B, self.C, self.D)
 
     @property

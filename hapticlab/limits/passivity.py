@@ -5,8 +5,8 @@ Colgate and Schenkel (1997): a force ``H(z) x`` held over each period is made pa
 ``D_k = 1 + 2 cos wT + ... + 2 cos kwT``, a polynomial in u = cos wT, so the worst frequency is a root of a derivative.
 
 A delay of d + f periods, 0 < f < 1, changes the force f*T after each sample. Let the hand split its motion over a
-period into D1 before and D2 after the change; the cheapest split of ``(b/T)(D1^2/f + D2^2/(1-f)) + F[n-1] D1 + F[n] D2``
-leaves the condition used below,
+period into D1 before and D2 after the change; the cheapest split of ``(b/T)(D1^2/f + D2^2/(1-f)) + F[n-1] D1 + F[n]
+D2`` leaves the condition used below,
 
     b - R(u) - T^2 f (1-f) |H|^2 / (4b) >= 0    for all u in [-1, 1],
 
@@ -51,36 +51,40 @@ def passivity_limit(
     velocity_filter: float = 0.0,
     parameter: str = "k",
 ) -> Limit:
-    """Largest stiffness that a passive hand of any kind cannot set chattering, Eq. (23.10) and its general form.
+    """Largest stiffness at which no passive hand can make the wall chatter, Eq. (23.10) and its general form.
 
-    Necessary and sufficient where the spring always acts. For the unilateral wall sufficient with law "zoh" and no delay;
-    with a memory of past samples, in the law or in the delay, it says nothing about the switching at the boundary.
+    The limit is necessary and sufficient if the spring always acts. For a unilateral wall it is sufficient with law
+    "zoh" and no delay. If the law or the delay uses past samples, it does not account for the switching at the
+    boundary.
 
     Parameters
     ----------
     device : Device or paddle
-        Its b, T and delay are read, the delay in whole and fractional periods alike.
+        Its b, T and delay are used; the delay can have whole and fractional periods.
     B : float
-        Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside the law, not through it.
+        Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, in addition to the law, not through
+        it.
     law : str, Scene or callable
-        Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis". Or a linear scene
-        with its stiffness unbound, velocity by backward difference; or a function of K [N/m] that returns a LinearLaw.
+        Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis". Or a linear
+        scene with its stiffness unbound, velocity by backward difference; or a function of K [N/m] that returns a
+        LinearLaw.
     velocity_filter : float
-        Beside a named law, as B: time constant tau [s] >= 0 of a first-order filter of the damper's velocity:
-        ``v[n] = (tau v[n-1] + x[n] - x[n-1])/(tau + T)``. It relieves the device of a damper B > 0, not of B < 0.
+        With a named law, as for B: time constant tau [s] >= 0 of a first-order filter of the damper's velocity: ``v[n]
+        = (tau v[n-1] + x[n] - x[n-1])/(tau + T)``. With a damper B > 0 it reduces the device damping that is needed;
+        with B < 0 it does not.
     parameter : str
         The scene's parameter that is K; its force must be affine in it.
 
     Returns
     -------
     Limit
-        K = 0 with the reason where no stiffness is passive; ``frequency`` 0.0 where slow motion decides. Where the law has
-        a negative stiffness beside K, the reason says from which K on it is passive.
+        K = 0 with the reason if no stiffness is passive; ``frequency`` is 0.0 if slow motion decides. If the law has a
+        negative stiffness in addition to K, the reason gives the K above which it is passive.
 
     Raises
     ------
     AnalysisError
-        For a value that is not finite or out of range, an unknown law, and B or velocity_filter beside a law of one's own.
+        For a value that is not finite or out of range, an unknown law, and B or velocity_filter with a law of your own.
 
     Examples
     --------

@@ -1,9 +1,9 @@
 """Linear stability of a handle, a hand and a law that always acts: exact poles, exact limit.
 
 Between changes of the force the plant moves by its matrix exponential. The characteristic equation is affine in the
-stiffness, p0(z) + K p1(z) = 0, so a pole can cross the unit circle only at an angle where p0/p1 is real. These angles are
-the roots of a polynomial in cos(theta), and of slow ones, which rounding hides there, where the imaginary part changes its
-sign along a logarithmic scale; each gives one K, and the poles between two of them say which one counts.
+stiffness, p0(z) + K p1(z) = 0, so a pole can cross the unit circle only at an angle where p0/p1 is real. These angles
+are the roots of a polynomial in cos(theta), and of slow ones, which rounding hides there, where the imaginary part
+changes its sign along a logarithmic scale; each gives one K, and the poles between two of them say which one counts.
 """
 
 from __future__ import annotations
@@ -49,29 +49,31 @@ SLOW_ANGLES = np.geomspace(1e-11, 0.05, 400)
 def stability_limit(device: AnyDevice, *, law: StiffnessLaw = "zoh", B: float = 0.0, parameter: str = "k") -> Limit:
     """Largest stiffness at which this paddle in this hand is stable: the eigenvalues of the sampled loop.
 
-    Linear, with the spring always acting: it ignores encoder, noise, Coulomb friction, force saturation and the hand's
-    push. A hand of another kind may be unstable sooner (:func:`~hapticlab.limits.passivity.passivity_limit`), and a
-    unilateral wall under a law with memory chatters sooner.
+    The limit is linear, with the spring always acting. It does not account for encoder, noise, Coulomb friction, force
+    saturation and the hand's push. A different hand may be unstable at a lower stiffness
+    (:func:`~hapticlab.limits.passivity.passivity_limit`), and a unilateral wall whose law uses past samples chatters at
+    a lower stiffness.
 
     Parameters
     ----------
     device : Device or paddle
-        Its m, b, T, delay, hand and velocity are read. The delay may hold whole and fractional periods.
+        Its m, b, T, delay, hand and velocity are used. The delay can have whole and fractional periods.
     law : str, Scene or callable
-        Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis"; half_sample uses
-        the exact velocity at the sample where the paddle measures it. Where it is estimated (``device.velocity``: an
-        encoder, a board) Eq. (23.3) is Eq. (23.5), and so is its limit. Or a linear scene with its stiffness unbound:
-        filters, estimated velocities, ``hl.laws.force_filter`` (23.8); a stiffness that it holds is not used. Or a function of
-        K [N/m] that returns a LinearLaw.
+        Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis"; half_sample
+        uses the exact velocity at the sample where the paddle measures it. Where it is estimated (``device.velocity``:
+        an encoder, a board) Eq. (23.3) is Eq. (23.5), and so is its limit. Or a linear scene with its stiffness
+        unbound: filters, estimated velocities, ``hl.laws.force_filter`` (23.8); a stiffness that it holds is not used.
+        Or a function of K [N/m] that returns a LinearLaw.
     B : float
-        Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside a named law, not through it.
+        Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, in addition to a named law, not
+        through it.
     parameter : str
         The scene's parameter that is K; its force must be affine in it.
 
     Returns
     -------
     Limit
-        ``frequency`` is where stability is lost. K = 0 with the reason where the smallest stiffness is unstable.
+        ``frequency`` is that at which stability is lost. K = 0 with the reason if the smallest stiffness is unstable.
 
     Raises
     ------
@@ -156,14 +158,14 @@ def closed_loop_matrix(
     Parameters
     ----------
     K : float
-        Stiffness [N/m]; None for a LinearLaw or a scene that holds its own, and for these alone. The others are those of
-        :func:`stability_limit`.
+        Stiffness [N/m]; None for a LinearLaw or a scene that holds its own, and for these alone. The others are those
+        of :func:`stability_limit`.
 
     Returns
     -------
     array of shape (n, n)
-        n = 2, plus one past force [N] for every begun period of delay, plus the states of the law: of a named one the past
-        samples [m] it looks at.
+        n = 2, plus one past force [N] for every begun period of delay, plus the states of the law: of a named one the
+        past samples [m] it looks at.
 
     Examples
     --------

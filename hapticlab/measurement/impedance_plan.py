@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Excitation(ShowsItself):
-    """What shakes the handle while its impedance is measured.
+    """The excitation of the handle while its impedance is measured.
 
     Parameters
     ----------
     how : {"multisine", "swept_sine"}
-        Odd lines at once with phases of low crest factor, anew in each realization; or a periodic chirp through the band.
+        Odd lines at once with phases of low crest factor, anew in each realization; or a periodic chirp through the
+        band.
     drive : {"hand", "motor"}, optional
         By default the hand where a simulated paddle has one with k or b, else the motor.
     frequency : array, optional
@@ -63,7 +64,7 @@ class Excitation(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Averaging(ShowsItself):
-    """How much is recorded, and what of it is kept.
+    """The amount of recorded data, and the fraction that is used.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ class Averaging(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Safety(ShowsItself):
-    """What the handle of a board may do while its motor shakes it; a simulated handle is free.
+    """Limits on the motion of a board's handle while its motor shakes it; a simulated handle has none.
 
     Parameters
     ----------

@@ -113,27 +113,28 @@ def largest_stiffness(
     search: Search = SEARCH,
     judged: Judgement = JUDGEMENT,
 ) -> LargestStiffness:
-    """Search the two borders of a stiff wall, where it stops coming to rest and where it buzzes: trials on the paddle.
+    """Search for two stiffness limits by trials on the paddle: where a wall no longer comes to rest, and where it buzzes.
 
-    A trial lets the handle go before the wall, at its boundary or in it, under a constant push, and asks two questions. Does
-    the swing of the entry die out (:func:`hapticlab.chatter`), down to what the encoder's own counts make of it? And does
-    the hand feel a buzz then: is the amplitude of the motor's force, without its mean, its drift and the swing, above
-    ``buzz_max``? Both borders are searched from each of several :class:`~hapticlab.measurement.search.Starts`, and each is an
-    interval over those.
+    A trial lets the handle go before the wall, at its boundary or in it, under a constant push, and asks two questions.
+    Does the swing of the entry die out (:func:`hapticlab.chatter`), down to what the encoder's own counts make of it?
+    And does the hand feel a buzz then: is the amplitude of the motor's force, without its mean, its drift and the
+    swing, above ``buzz_max``? Both borders are searched from each of several
+    :class:`~hapticlab.measurement.search.Starts`, and each is an interval over those.
 
-    From each start the stiffness grows by a ratio until a wall fails; then the ratio is halved, from the last that passed,
-    until it is within ``tolerance``. No trial goes further than one ratio beyond what came to rest; the next start begins one
-    ratio below that. Where not even the first passes, softer walls are tried, down to a hundredth; the motor's push falls
-    with them. A guard in the scene cuts the motor at the sample at which the wall has given too much energy in a quarter of a
-    second or the handle is too fast, and between trials it is off.
+    From each start the stiffness grows by a ratio until a wall fails; then the ratio is halved, from the last that
+    passed, until it is within ``tolerance``. No trial goes further than one ratio beyond what came to rest; the next
+    start begins one ratio below that. Where not even the first passes, softer walls are tried, down to a hundredth; the
+    motor's push falls with them. A guard in the scene cuts the motor at the sample at which the wall has given too much
+    energy in a quarter of a second or the handle is too fast, and between trials it is off.
 
     A trial lasts ten periods of handle and hand on the wall's spring at least, of 50 g where a board does not say its
-    mass, and is repeated, twice as long, while its record does not tell: up to 16 times as long. What follows a simulated
-    hand's moving intent is no chatter, and is taken off the ripple, as well as a record of that length tells it. A trial that
-    cannot tell is undecided, and bounds the answer as a failure does; where none passed the answer is then nan, not 0.
+    mass, and is repeated, twice as long, while its record does not tell: up to 16 times as long. What follows a
+    simulated hand's moving intent is no chatter, and is taken off the ripple, as well as a record of that length tells
+    it. A trial that cannot tell is undecided, and bounds the answer as a failure does; where none passed the answer is
+    then nan, not 0.
 
-    Within six standard deviations of the sensor's noise a handle is at rest: a smaller chatter is not seen. A board shows
-    that noise from sample to sample in the softer walls.
+    Within six standard deviations of the sensor's noise a handle is at rest: a smaller chatter is not seen. A board
+    shows that noise from sample to sample in the softer walls.
 
     What is found is an outcome: this handle, these hands, these starts. A passive hand that grips otherwise may chatter
     sooner (:func:`hapticlab.passivity_limit`).

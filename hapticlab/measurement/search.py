@@ -15,7 +15,7 @@ from ..errors import AnalysisError
 
 @dataclass(frozen=True, kw_only=True)
 class Search(ShowsItself):
-    """Which walls a search tries: from the softest on, by a ratio, until the answer is close enough.
+    """The walls that a search tries: from the softest upwards, by a ratio, until the answer is close enough.
 
     Parameters
     ----------
@@ -47,21 +47,22 @@ class Search(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Starts(ShowsItself):
-    """From which starts every wall is tried, with each push and each hand.
+    """The starts from which every wall is tried, with each push and each hand.
 
     The handle is let go before the wall, or, where a sensor's counts may make it buzz, at rest in the wall already.
 
     Parameters
     ----------
     run_ups : sequence of float or text
-        From how far before the wall the push brings the handle [m], >= 0: it enters with sqrt(2 push run_up/m), 90 mm/s for
-        0.2 N, 1 mm and 50 g. On a board the motor leads it there.
+        From how far before the wall the push brings the handle [m], >= 0: it enters with sqrt(2 push run_up/m), 90 mm/s
+        for 0.2 N, 1 mm and 50 g. On a board the motor leads it there.
     pushes : sequence of float or text
-        Constant forces of the motor into the wall [N]. By default one of 0.2 N, at most a quarter of what the paddle's force
-        limit leaves the wall, and none where a simulated hand pushes or leans. Friction above it hides what the wall does.
+        Constant forces of the motor into the wall [N]. By default one of 0.2 N, at most a quarter of what the paddle's
+        force limit leaves the wall, and none where a simulated hand pushes or leans. Friction above it hides what the
+        wall does.
     within_count : int
-        Places spread over one encoder count at which the handle rests in every wall, >= 1, by as many pushes: in the middle
-        of a count it may be quiet, and buzz at its edge.
+        Places spread over one encoder count at which the handle rests in every wall, >= 1, by as many pushes: in the
+        middle of a count it may be quiet, and buzz at its edge.
     hands : sequence of Hand
         That hold a simulated paddle in turn, by default its own. On a board, measure again in another hand.
 
@@ -96,7 +97,7 @@ def _each(given):
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement(ShowsItself):
-    """How long a trial of a wall lasts, and what it may do and still stand.
+    """The duration of a trial of a wall, and the motion up to which it passes.
 
     Parameters
     ----------
@@ -105,7 +106,8 @@ class Judgement(ShowsItself):
     speed_max : float or text
         Of the handle [m/s], where the guard cuts the motor; it leaves room for three encoder counts a period.
     buzz_max : float or text
-        Amplitude of the force's ripple [N] up to which a wall is quiet: without friction some count is always dithered over.
+        Amplitude of the force's ripple [N] up to which a wall is quiet: without friction some count is always dithered
+        over.
     duration, longest : float or text, optional
         Of a trial [s], 128 samples at least; doubled up to the longest while the record does not tell. By default 1 s,
         500 samples and ten periods at least, and 16 times that.

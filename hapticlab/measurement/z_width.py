@@ -40,7 +40,8 @@ class ZWidth(Tabular):
     K : array, shape (N,)
         The largest stiffness that both borders allow, from every start [N/m]; 0 where all failed, nan where undecided.
     unstable, buzz : array, shape (N, 2)
-        Up to which stiffness walls come to rest, and up to which no buzz is felt [N/m]: lowest and highest over the starts.
+        Up to which stiffness walls come to rest, and up to which no buzz is felt [N/m]: lowest and highest over the
+        starts.
     passivity, stability : array, shape (N,)
         What theory promises at each B [N/m]; nan where it does not know the paddle or the law.
     searches : tuple of LargestStiffness
@@ -49,8 +50,8 @@ class ZWidth(Tabular):
 
     Notes
     -----
-    Colgate and Brown (1994) call the range of impedances that a device renders passively its Z-width. Measured here is what
-    comes to rest, and quietly, from the starts of the searches.
+    Colgate and Brown (1994) call the range of impedances that a device renders passively its Z-width. Measured here is
+    what comes to rest, and quietly, from the starts of the searches.
     """
 
     B: Array
@@ -98,7 +99,7 @@ def z_width(
     search: Search = SEARCH,
     **options: Any,
 ) -> ZWidth:
-    """Measure the K-B borders of a wall on a paddle: a search of the largest stiffness at every virtual damping.
+    """Measure the K-B borders of a wall on a paddle, by a search for the largest stiffness at each virtual damping.
 
     Parameters
     ----------
@@ -108,8 +109,8 @@ def z_width(
     B : number or text, or sequence of them
         Virtual damping [N s/m], of either sign.
     search : Search
-        As :func:`hapticlab.measure.largest_stiffness` takes it; where it says no ``first``, the search at each next damping
-        begins well below the border at the last.
+        As :func:`hapticlab.measure.largest_stiffness` takes it; where it says no ``first``, the search at each next
+        damping begins well below the border at the last.
     **options
         Of :func:`hapticlab.measure.largest_stiffness`: starts, place, judged.
 

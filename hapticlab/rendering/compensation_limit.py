@@ -29,7 +29,7 @@ NEAR = 1e-6
 
 @dataclass(frozen=True)
 class CompensationLimit(ShowsItself):
-    """The parts of the device's friction that may be compensated; printing it says so in words.
+    """The fractions of the device's friction that can be compensated; ``print`` shows them in words.
 
     Attributes
     ----------
@@ -38,7 +38,8 @@ class CompensationLimit(ShowsItself):
     frequency : float
         Where that pole turns [Hz]; 0 where the handle drifts off without turning.
     dry : float
-        Largest part of the Coulomb friction at viscous = 0: 1, or where the paddle begins to hunt about its hand's spring.
+        Largest part of the Coulomb friction at viscous = 0: 1, or where the paddle begins to hunt about its hand's
+        spring.
     m, b, k : float
         Of handle and hand: mass [kg], damping at the least [N s/m], stiffness [N/m].
     b_device, coulomb : float
@@ -65,11 +66,11 @@ class CompensationLimit(ShowsItself):
         return self.hunts_from(0.0)
 
     def left(self, viscous: float) -> float:
-        """Return the damping that is left [N s/m], negative where the handle is driven."""
+        """Return the remaining damping [N s/m], negative if the handle is driven."""
         return self.b - viscous * self.b_device
 
     def hunts_from(self, viscous: float) -> float:
-        """Return the part of the Coulomb friction from which on the paddle, once kicked, keeps moving for ever.
+        """Return the fraction of the Coulomb friction above which the paddle, after a push, keeps moving for ever.
 
         Without a hand's spring that is 1. About a spring the handle must break away at every turn, so that more is
         needed: 2/(1 + r), where r is the part of its swing that half a period with the damping left keeps. Of sampling
@@ -91,7 +92,7 @@ class CompensationLimit(ShowsItself):
         return max(self._excess(dry) / self.left(viscous), 0.0)
 
     def kick(self, viscous: float, dry: float) -> float:
-        """Return the speed [m/s] beyond which a free handle runs away though its Coulomb friction holds it at rest.
+        """Return the speed [m/s] above which a free handle runs away, although Coulomb friction holds it at rest.
 
         (coulomb_least - dry coulomb)/(-damping left) where more than all viscous damping is compensated; infinite where
         it is not.
@@ -104,8 +105,8 @@ class CompensationLimit(ShowsItself):
     def hunting(self, viscous: float, dry: float) -> float:
         """Return the amplitude [m] of the limit cycle about the hand's spring; 0 where the paddle comes to rest.
 
-        g/k (1 + r)/(1 - r) with g = dry coulomb - coulomb_least the force left over: over half a period the handle swings about
-        g/k and keeps the part r of its swing. Infinite where the damping left is not positive.
+        g/k (1 + r)/(1 - r) with g = dry coulomb - coulomb_least the force left over: over half a period the handle
+        swings about g/k and keeps the part r of its swing. Infinite where the damping left is not positive.
         """
         if not self.k:
             raise AnalysisError("no spring to hunt about: the hand has k = 0 N/m. Use speed(viscous, dry)")
@@ -144,7 +145,7 @@ class CompensationLimit(ShowsItself):
         return "\n".join(lines)
 
     def plot(self) -> Figure:
-        """Draw what the paddle does over the two parts, or over the one that it has; return the figure."""
+        """Draw the behaviour of the paddle over the two fractions, or over the one that it has; return the figure."""
         if not self.coulomb:
             return self._plot_viscous()
         parts = np.linspace(0, self.viscous, 200)
@@ -194,10 +195,10 @@ def compensation_limit(
 ) -> CompensationLimit:
     """Largest part of a paddle's friction that :func:`~hapticlab.scene.laws.compensation.damping_compensation` may cancel.
 
-    The viscous part is a pole on the unit circle of the sampled loop, with hand, delay and the lag of the velocity. A free
-    handle drifts off at viscous = 1 + b_hand/b whatever the lag, for at constant speed every estimate is right; about a
-    hand's spring it is thrown into an oscillation, where the lag counts. The dry part is of the exact motion between
-    reversals, in the limit of a short period and a narrow ``speed``.
+    The viscous part is a pole on the unit circle of the sampled loop, with hand, delay and the lag of the velocity. A
+    free handle drifts off at viscous = 1 + b_hand/b whatever the lag, for at constant speed every estimate is right;
+    about a hand's spring it is thrown into an oscillation, where the lag counts. The dry part is of the exact motion
+    between reversals, in the limit of a short period and a narrow ``speed``.
 
     Parameters
     ----------
@@ -232,8 +233,8 @@ def compensation_limit(
 
     Friction that is identified first, ``found = hl.identify.paddle(paddle)``, is known within an interval. With
     ``found.paddle()``, ``b_least=found["b"].low`` and ``coulomb_least=found["coulomb"].low`` the parts are those of
-    ``hl.laws.damping_compensation(b=found["b"].value, coulomb=found["coulomb"].value, ...)`` that are safe whatever the friction
-    is inside the intervals. For instance b = 0.1 N s/m, between 0.095 and 0.105:
+    ``hl.laws.damping_compensation(b=found["b"].value, coulomb=found["coulomb"].value, ...)`` that are safe whatever the
+    friction is inside the intervals. For instance b = 0.1 N s/m, between 0.095 and 0.105:
 
     >>> safe = hl.design.compensation(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), b_least=0.095)
     >>> round(safe.viscous, 9)

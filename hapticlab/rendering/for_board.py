@@ -59,7 +59,7 @@ class BoardWall(ShowsItself):
 
 
 def wall_for_board(paddle: SimulatedPaddle, *, K: float, board: str | Board = "uno", **options: Any) -> BoardWall:
-    """Return the best model-based wall that a board runs at the paddle's period, and why it is none of the better ones.
+    """Return the best model-based wall that a board runs at the paddle's period, and why no better one fits.
 
     Parameters
     ----------

@@ -110,10 +110,10 @@ def hybrid_wall(
     x_o: float = 0.0,
     hand: Hand | None = None,
 ) -> HybridMotion:
-    """Exact motion of handle and hand against the wall itself, unsampled: what a rendered wall should feel like.
+    """Exact motion of handle and hand against the wall itself, without sampling: the ideal of a rendered wall.
 
-    F = K p + B p' where p = x - x_o >= 0, else 0, in continuous time. In each mode the motion is a power series of all its
-    digits; a crossing is bracketed, a turning point beyond the boundary included, and bisected to the last one.
+    F = K p + B p' where p = x - x_o >= 0, else 0, in continuous time. In each mode the motion is a power series of all
+    its digits; a crossing is bracketed, a turning point beyond the boundary included, and bisected to the last one.
 
     Parameters
     ----------
@@ -216,7 +216,8 @@ class _Path:
 def _bisect(true, high):
     """Return the first number found from which on a condition is true, which it is at ``high``.
 
-    Not by SciPy: after a crossing the motion starts at p = 0, which a search for a change of sign would take for the next.
+    Not by SciPy: after a crossing the motion starts at p = 0, which a search for a change of sign would take for the
+    next.
     """
     low = 0.0
     while low < (middle := (low + high) / 2) < high:

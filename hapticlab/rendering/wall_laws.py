@@ -46,7 +46,7 @@ class WallLaw(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Rendering(ShowsItself):
-    """How laws that are compared render a wall, beside their own formulas.
+    """Common settings of the laws in a comparison.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Rendering(ShowsItself):
     velocity: Literal["model"] | None = None
 
     def options(self) -> dict[str, Any]:
-        """What :func:`wall_law` takes."""
+        """The options of :func:`wall_law`."""
         return dict(vars(self))
 
 

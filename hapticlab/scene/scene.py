@@ -44,19 +44,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scene(Typeset):
-    """What is felt at the handle: a force law, and the equations of motion it needs.
+    """A scene: the force law at the handle, and the equations of motion that it needs.
 
     Parameters
     ----------
     force : sympy expression
         F_e [N], the force on the environment, positive into the wall (Eq. 23.1); the motor applies -F_e. A power whose
-        exponent is no fixed fraction, such as a parameter, runs as exp(exponent*log(base)): its base must be positive.
+        exponent is not a fixed fraction, such as a parameter, runs as exp(exponent*log(base)): its base must be
+        positive.
     eom : sequence of sympy.Eq, or models of :func:`~hapticlab.scene.mechanics.lagrange.lagrange`
         Equations of motion of the coordinates, linear in the highest derivatives, and difference equations
         ``Eq(y(n), ...)`` of signals.
     watch : sequence of expressions or names, or dict name -> expression
-        What a run records beside x, v and F. An expression in a sequence is called as it is written; the names of a
-        dict are single words that a record does not use itself.
+        Expressions that a run records in addition to x, v and F. The channel of an expression in a sequence has the
+        name that is written; the names of a dict are single words that a record does not use itself.
     values : dict
         Parameter values in SI, or texts with a unit such as ``"10 mm"``. Read-only once the scene is made.
     name : str
@@ -64,7 +65,7 @@ class Scene(Typeset):
     Raises
     ------
     SceneError, UnitsError, ParameterError, SignalError
-        At once, in the student's own symbols.
+        When the scene is made, in the student's own symbols.
 
     Examples
     --------

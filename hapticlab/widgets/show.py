@@ -14,8 +14,9 @@ from ..errors import AnalysisError
 def show(figure: Any, alt: str | None = None) -> None:
     """Show a figure in a notebook, with an alternative text.
 
-    The text is read aloud by a screen reader, stands for the figure where it cannot be shown, and travels with the notebook
-    into HTML. Without a notebook it is printed. A figure of this package that a cell returns carries one as well.
+    The text is read aloud by a screen reader, stands for the figure where it cannot be shown, and travels with the
+    notebook into HTML. Without a notebook it is printed. A figure of this package that a cell returns carries one as
+    well.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ def explore(
     over: tuple[str, str] = ("K", "B"),
     **given: Any,
 ) -> MapView:
-    """Wall map in a notebook that is drawn anew while a slider moves.
+    """Wall map in a notebook that is redrawn while a slider moves.
 
     While a map is computed only the newest place of the sliders waits: none pile up.
 

@@ -99,7 +99,7 @@ class HandleMotion(ShowsItself):
         return figure
 
     def scaled(self, factor: float) -> HandleMotion:
-        """Return the same motion, so many times as large."""
+        """Return the same motion, scaled by a factor."""
         return HandleMotion(self.name, factor * self.x, self.duration, self.why, self.breaks)
 
     def __str__(self) -> str:
@@ -109,7 +109,7 @@ class HandleMotion(ShowsItself):
 def handle_motions(
     scene: object = None, paddle: object = None, *, band: tuple[float, float] = BAND, travel: float = TRAVEL, seed: int = 0
 ) -> tuple[HandleMotion, ...]:
-    """Motions that together show how accurate a scene is: what a hand does at its slowest, its quickest and in between.
+    """Motions that together show how accurate a scene is: those of a hand at its slowest, its quickest and in between.
 
     Parameters
     ----------

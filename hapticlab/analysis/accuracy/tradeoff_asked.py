@@ -72,7 +72,7 @@ class Tried(ShowsItself):
 
 @dataclass(frozen=True, kw_only=True)
 class Conditions(ShowsItself):
-    """What is the same for every setting of a trade-off: how the handle moves, and what the program is asked for.
+    """The conditions of a trade-off that are the same for every setting: motions of the handle and compile options.
 
     Parameters
     ----------

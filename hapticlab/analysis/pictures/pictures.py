@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 
 def picture(name: str | Scene | Callable[..., Scene], **state: float | str) -> Figure:
-    """Draw a scene as a schematic, with the handle and what moves in a given state.
+    """Draw a scene as a schematic, with the handle and the bodies in a given state.
 
     Parameters
     ----------
     name : str or Scene
-        The name of a scene in ``hl.library``, or that function of the library itself; or a scene of your own, drawn from
-        its equations: the handle, walls where its force and equations switch, a block for each coordinate in m, a
+        The name of a scene in ``hl.library``, or that function of the library itself; or a scene of your own, drawn
+        from its equations: the handle, walls where its force and equations switch, a block for each coordinate in m, a
         pendulum or a dial for each in rad.
     **state : float or str
         The handle x [m], coordinates and parameters by name, in SI or as a text with a unit; the others as the library

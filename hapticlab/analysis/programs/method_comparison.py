@@ -38,7 +38,8 @@ class WithoutSteps:
     order, evaluations, cost : str
         In words: there is no power of a step.
     real, imaginary : float
-        The largest h b/m and omega h, as of :class:`~hapticlab.compiler.methods.method_table.Method`; inf where any is stable.
+        The largest h b/m and omega h, as of :class:`~hapticlab.compiler.methods.method_table.Method`; inf where any is
+        stable.
     """
 
     name: str
@@ -159,7 +160,7 @@ _BESIDE = (
 
 
 def methods() -> Methods:
-    """The methods by name: explicit fixed-step ones, their limits found by taking steps of them, "exact" and "taylor".
+    """The methods by name: explicit fixed-step methods, with limits found from their steps, "exact" and "taylor".
 
     Returns
     -------

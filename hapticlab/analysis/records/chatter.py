@@ -57,26 +57,26 @@ REPEATS, LONGEST_CYCLE = 1e-4, 2000
 def chatter(log: Telemetry, driven: Hand | Callable[[Array], ArrayLike] | str | ArrayLike | None = None) -> Chatter:
     """Find chatter, Section 23.4: sustained oscillation, often with repeated contact with the wall.
 
-    Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An
-    oscillation turns round at least twice there and is larger than a nanometre, a millionth of the travel, and single
-    precision; to call it sustained takes three cycles in a quarter of the record. Where the handle leaves the wall, or the
-    motor is at its limit, a constant plus an exponential through the swings says whether they end in a cycle or at rest; a
-    record that leaves both open is "undecided". Motion that is driven, by a hand's
-    noise or moving intent or by a scene's own vibration, looks like chatter, unless ``driven`` says what drives: the
-    part that follows it is then taken off (:func:`~hapticlab.analysis.records.driven_motion.following`). A chatter that
-    has locked onto its drive's own frequency, or onto a harmonic of it up to the eighth, cannot be told from it and
-    counts as driven.
+    The last half of a record is examined, and the position of the handle itself (``x_true``) if an encoder or noise
+    hides it. An oscillation reverses at least twice in that half and is larger than a nanometre, a millionth of the
+    travel, and single precision. It is called sustained if a quarter of the record has at least three cycles. If the
+    handle leaves the wall, or the motor is at its limit, a constant plus an exponential is fitted to the amplitudes and
+    shows whether they end in a cycle or at rest; a record that leaves both possible is "undecided". Motion that is
+    driven by a hand's noise or moving intent, or by a vibration in the scene, looks like chatter unless ``driven``
+    names the drive; the component that follows the drive is then subtracted
+    (:func:`~hapticlab.analysis.records.driven_motion.following`). Chatter that has locked onto the frequency of its
+    drive, or onto a harmonic of it up to the eighth, cannot be distinguished from the drive and is regarded as driven.
 
-    Without ``x_true`` a sensor's noise is all there is of a resting handle: what is white at every lag up to 40 samples is
-    no chatter, and a chatter below 0.6 standard deviations of that noise is not seen.
+    Without ``x_true`` the record of a resting handle contains only the noise of the sensor: a signal that is white at
+    every lag up to 40 samples is not chatter, and chatter below 0.6 standard deviations of that noise is not found.
 
     Parameters
     ----------
     log : Telemetry
         Uses t [s], x [m], F [N] and, where recorded, x_true [m]; at least 32 samples.
     driven : Hand, callable, str or array, optional
-        What drives: a hand with a moving intent, a function of an array of times [s], the name of a watched channel, or
-        one number a sample. Its size and unit do not matter.
+        The drive: a hand with a moving intent, a function of an array of times [s], the name of a watched channel, or
+        one number per sample. Its size and unit do not matter.
 
     Returns
     -------
@@ -191,8 +191,8 @@ def decaying(largest, least_before, largest_before):
     """Tell whether swings die out, from those of the last quarter and of the one before it.
 
     However slow a decay, all of the last quarter lie below all of the one before; where the difference is too small to
-    be seen in neighbours, the largest lies at the bottom of the range before it, by 1 % in all. No limit cycle does that,
-    regular or not. Where a beat hides a decay, the largest has lost a third.
+    be seen in neighbours, the largest lies at the bottom of the range before it, by 1 % in all. No limit cycle does
+    that, regular or not. Where a beat hides a decay, the largest has lost a third.
     """
     bottom = least_before + 0.05 * (largest_before - least_before)
     slow = (largest <= bottom) & (largest < (1 - LOCK) * largest_before)
@@ -223,8 +223,8 @@ def _irregularity(y):
     """Return the standard error of the logarithm of the amplitude's ratio between the two halves of y, and whether it falls.
 
     Four windows, a straight line through the logarithms of their amplitudes: exponential growth lies on it, the ups and
-    downs of an irregular limit cycle (encoder, friction, contacts between samples) do not. An amplitude falls where each
-    window has less than the one before, as friction makes it do, faster and faster.
+    downs of an irregular limit cycle (encoder, friction, contacts between samples) do not. An amplitude falls where
+    each window has less than the one before, as friction makes it do, faster and faster.
     """
     size = len(y) // 4
     logs = np.log([strength(y[i * size : (i + 1) * size]) + 1e-300 for i in range(4)])

@@ -32,8 +32,8 @@ class Energy(ShowsItself, Guessed):
     W : array, shape (N,)
         Work done by the handle on the environment up to each sample [J]; negative where the environment has given more.
     generated : float
-        -W at the last sample without force after a contact [J]: what the completed penetrations generated. nan where the
-        handle has not left the wall again.
+        -W at the last sample without force after a contact [J]: what the completed penetrations generated. nan where
+        the handle has not left the wall again.
     absorbed : float
         What they kept, -generated [J].
     extracted : float
@@ -79,10 +79,10 @@ class Energy(ShowsItself, Guessed):
 
 
 def energy(log: Telemetry) -> Energy:
-    """Return the energy through the port, force and displacement paired as they acted: Fig. 23.6.
+    """Return the energy through the port, with force and displacement paired as they acted, Fig. 23.6.
 
-    The force computed from sample n acts while the handle moves from x[n] to x[n+1]; a delay of d + f periods moves it on
-    by d samples and lets it change at the fraction f of a period. Pairing F[n] with x[n] - x[n-1] instead makes a wall
+    The force computed from sample n acts while the handle moves from x[n] to x[n+1]; a delay of d + f periods shifts it
+    by d samples and makes it change at the fraction f of a period. Pairing F[n] with x[n] - x[n-1] instead makes a wall
     that generates energy look like one that dissipates it.
 
     Parameters

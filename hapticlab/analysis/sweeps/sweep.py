@@ -130,11 +130,11 @@ def sweep(
     resume: File | None = None,
     **values: Any,
 ) -> Sweep:
-    """Simulate every combination of the named values and measure each, without storing a trace.
+    """Simulate every combination of the named values and compute a metric for each, without storing samples.
 
-    Points that differ in values only are lanes of one program; every T, and every paddle of another structure, is a run
-    of its own. A point's result is the same as when it runs alone, bit for bit, for any number of workers on processors of
-    one kind.
+    Points that differ in values only are lanes of one program; every T, and every paddle of a different structure, is a
+    separate run. The result of a point is the same as when it runs alone, bit for bit, for any number of workers on
+    processors of one kind.
 
     Parameters
     ----------
@@ -143,33 +143,35 @@ def sweep(
     duration : float or text
         [s]
     metric : {"chatter", "growth", "contacts", "energy", "peak_force"}
-        ``chatter`` sustained or growing amplitude [m]: half the largest swing, from turning point to turning point, of the
-        last quarter. 0 where the handle rests, within one encoder count or 20 nm, and where every swing of the last quarter
-        is smaller than every one of the quarter before. nan where the run cannot tell: nothing moves the handle, a
-        quarter has no whole swing, or bounces off the wall shrink slowly, by less than two thirds in a quarter, so that they
-        may end in a cycle. Lengthen ``duration``, or ask :func:`hapticlab.chatter` of a single run. Driven motion (noise, a
-        moving intent) is not told apart. ``growth`` logarithm of the swing's ratio between these quarters [1/s].
-        ``contacts`` of the last half [1/s]. ``energy`` the most ever drawn from the environment [J]. ``peak_force`` [N].
+        ``chatter`` sustained or growing amplitude [m]: half the largest swing, from turning point to turning point, of
+        the last quarter. 0 if the handle rests, within one encoder count or 20 nm, or if every swing of the last
+        quarter is smaller than every one of the quarter before. nan if the run does not decide it: nothing moves the
+        handle, a quarter has no whole swing, or bounces off the wall decay slowly, by less than two thirds in a
+        quarter, so that they may end in a cycle. Lengthen ``duration``, or use :func:`hapticlab.chatter` on a single
+        run. Driven motion (noise, a moving intent) is not distinguished from chatter. ``growth`` logarithm of the
+        swing's ratio between these quarters [1/s]. ``contacts`` of the last half [1/s]. ``energy`` the most ever drawn
+        from the environment [J]. ``peak_force`` [N].
     engine : {"auto", "llvm", "interpreter"}
     progress : bool
         Show a bar when the sweep lasts longer than two seconds.
     workers : int or callable
-        So many at once, -1 for one a processor: threads, which is all that machine code needs; processes where
-        llvmlite is missing (a script then needs ``if __name__ == "__main__":``). Or what maps a function over a sequence as
+        So many at once, -1 for one a processor: threads, which is all that machine code needs; processes where llvmlite
+        is missing (a script then needs ``if __name__ == "__main__":``). Or what maps a function over a sequence as
         ``map`` does: ``pool.imap_unordered`` of a multiprocessing pool, ``executor.map``, or a Dask cluster's
         ``client.get_executor().map``, where hapticlab must be installed too. It is called again and again, with 256
-        chunks at most. A chunk carries a program, the axes' values that it takes, the paddle with its seed, and a range of
-        points.
+        chunks at most. A chunk carries a program, the axes' values that it takes, the paddle with its seed, and a range
+        of points.
     resume : path, optional
-        A file that keeps what is finished. The same call goes on from it, whatever stopped it: Ctrl-C, a crash, a reboot;
-        workers may differ. A file of another sweep, or of another version of hapticlab, is refused. Two calls at once on
-        one file do each other no harm, and the work twice.
+        A file that stores finished points. The same call resumes from it after Ctrl-C, a crash or a reboot; workers may
+        differ. A file of a different sweep, or of a different version of hapticlab, is rejected. Two calls at the same
+        time on one file are safe, but do the work twice.
     method, substeps, hold, force_at : optional
         As :func:`hapticlab.compile` takes them, the same for every point; method="taylor" sweeps impacts and sticking
-        friction. With method="exact" parameters of the scene that are no axis are constants.
+        friction. With method="exact", parameters of the scene that are not an axis are constants.
     **values : float or array of shape (n,)
         SI, or texts with a unit. An array is an axis, a single number only sets the value. Names: the scene's
-        parameters; of the paddle T, m, b, delay, counts_per_metre, coulomb, force_max, noise; x and v, where the handle starts.
+        parameters; of the paddle T, m, b, delay, counts_per_metre, coulomb, force_max, noise; x and v, where the handle
+        starts.
 
     Returns
     -------
@@ -178,13 +180,13 @@ def sweep(
     Warns
     -----
     MissedEventWarning
-        Runs left events unlocated; of those that came from a file to resume from, nothing is known.
+        Runs left events unlocated; this is not known for points from a file to resume from.
 
     Raises
     ------
     AnalysisError
-        For an unknown metric or name, a name that both the scene and the paddle have, values that are not finite, a file
-        to resume from that is of another sweep, and workers that died.
+        For an unknown metric or name, a name that both the scene and the paddle have, values that are not finite, a
+        file to resume from that is of another sweep, and workers that died.
 
     Examples
     --------

@@ -39,17 +39,18 @@ _LEAST, _MOST = 73, 100
 
 @dataclass(frozen=True)
 class Taylor(ShowsItself):
-    """The motion over a step as a Taylor series, with the instants located at which its equations change.
+    """Taylor series of the motion over a step, with the instants located at which the equations change.
 
     Where the motion between events is linear, it is the closed form to rounding; elsewhere its error is that of the
-    order. There the last term of the series, of order 6 at least, is compared with the state: a step in which it is more
-    than 1e-8 of it (1e-5 in float32) is counted in the output ``unlocated``, if there is one; more than 1e-4 is a series
-    that diverges, and makes the state nan: a fault, which more substeps mend.
+    order. There the last term of the series, of order 6 at least, is compared with the state: a step in which it is
+    more than 1e-8 of it (1e-5 in float32) is counted in the output ``unlocated``, if there is one; more than 1e-4 is a
+    series that diverges, and makes the state nan: a fault, which more substeps mend.
 
     Walls, contacts, friction and every other case of the state end the series at the instant where they change. A step
-    needs to be a radian of the fastest part at most, and costs as many times one of RK4 as the series has terms. Not to be
-    confused with "exact", whose map is a constant; nor with a Taylor expansion at one place, for the series is made anew each
-    step. Source: Griewank and Walther, *Evaluating Derivatives*, ch. 13; Jorba and Zou, Experimental Mathematics 14 (2005).
+    needs to be a radian of the fastest part at most, and costs as many times one of RK4 as the series has terms. Not to
+    be confused with "exact", whose map is a constant; nor with a Taylor expansion at one place, for the series is made
+    anew each step. Source: Griewank and Walther, *Evaluating Derivatives*, ch. 13; Jorba and Zou, Experimental
+    Mathematics 14 (2005).
 
     Parameters
     ----------
@@ -57,8 +58,8 @@ class Taylor(ShowsItself):
         Of the series. Chosen from the fastest part of the motion and the real type, unless given.
     events : int, 1..8, optional
         Most events located in a step; a step of one more is finished without locating, and counted in the output
-        ``unlocated``. 2 for one or two surfaces, 3 for more, unless given. Where bodies bounce or rest, the output ``overlap``
-        says how deep they are inside each other at the end of a period. A run that left events out warns.
+        ``unlocated``. 2 for one or two surfaces, 3 for more, unless given. Where bodies bounce or rest, the output
+        ``overlap`` says how deep they are inside each other at the end of a period. A run that left events out warns.
 
     Examples
     --------
@@ -102,7 +103,8 @@ class Advanced:
     groups : (q, w, s)
         The state after it.
     facts : dict
-        Order, events, omega, and the part of a state past which the last term of its series makes it nan, for the listing.
+        Order, events, omega, and the part of a state past which the last term of its series makes it nan, for the
+        listing.
     unlocated : Value or None
         Steps of this period that left an event out, or whose series had not converged; None where there is no event.
     reactions, gaps : list of Value
@@ -139,8 +141,8 @@ def advance(
     name : str
         Of the scene, for messages.
     contacts : Touching, optional
-        What the motion touches: its reactions, see :func:`~hapticlab.compiler.events.flow.motion_of`, and its impacts, see
-        :class:`~hapticlab.compiler.events.located_step.Stepper`.
+        What the motion touches: its reactions, see :func:`~hapticlab.compiler.events.flow.motion_of`, and its impacts,
+        see :class:`~hapticlab.compiler.events.located_step.Stepper`.
     ranges : sequence of (low, high), optional
         Declared for each q: where one is finite, a motion that is not linear is looked at within it too.
     bound : bool

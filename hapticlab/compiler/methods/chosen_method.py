@@ -19,12 +19,12 @@ EXACT = "exact"
 
 @dataclass(frozen=True)
 class Exact(ShowsItself):
-    """What is linear advanced by its matrix exponential; ``rest`` names the method of what is not.
+    """Advance the linear part by its matrix exponential; ``rest`` names the method for the nonlinear part.
 
-    Its error is rounding, at any stiffness, so that it has no order. A step costs a product with a constant matrix, and the
-    parameters in it become constants. Where motion is linear between switches it makes a map a mode and locates the switches.
-    Not to be confused with "taylor", which takes nonlinear motion too. Source: Van Loan, IEEE Trans. Automatic Control 23
-    (1978).
+    Its error is rounding, at any stiffness, so that it has no order. A step costs a product with a constant matrix, and
+    the parameters in it become constants. Where motion is linear between switches it makes a map a mode and locates the
+    switches. Not to be confused with "taylor", which takes nonlinear motion too. Source: Van Loan, IEEE Trans.
+    Automatic Control 23 (1978).
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from .steps import RK4, adams_bashforth, nystrom, runge_kutta, semi_implicit_eul
 
 @dataclass(frozen=True, repr=False)
 class Method(ShowsItself):
-    """A method and what it is known for; printing it says so.
+    """A method and its properties; ``print`` shows them.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Method(ShowsItself):
     source : str
         Where it is from, or where a textbook has it.
     confused_with : str
-        What it is taken for, and how that differs.
+        A law with which it is confused, and the difference.
     """
 
     name: str
@@ -68,7 +68,7 @@ class Method(ShowsItself):
 
     @property
     def stable(self):
-        """Up to which step it is stable, in words; h is the step, omega the frequency of a spring without damping."""
+        """The longest stable step in words; h is the step, omega the frequency of a spring without damping."""
         spring = (
             f"h omega <= {self.imaginary:.4g} of a spring"
             if self.imaginary
@@ -111,7 +111,7 @@ class Method(ShowsItself):
         return math.nan if zeta and self.order_with_velocity else stability_region.longest_for(self, zeta)
 
     def energy_gain(self, omega_h):
-        """The part of its energy that a spring-mass gains in a step of omega h, in the long run."""
+        """The fraction of its energy that a spring-mass gains per step of omega h, in the long run."""
         return stability_region.energy_gain(self, omega_h)
 
     def amplification(self, z):

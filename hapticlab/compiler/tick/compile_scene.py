@@ -48,45 +48,46 @@ def compile(
 ) -> Program:
     """Compile a scene to the program that runs at the sample rate.
 
-    At sample n the force is computed from x(n) and the present states (``force_at`` has two other ways); then the
+    At sample n the force is computed from x(n) and the present states (``force_at`` offers two alternatives). Then the
     equations of motion advance by T in ``substeps`` steps of an explicit method.
 
     Parameters
     ----------
     scene : Scene
-    method : {"euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3", "rk4", \
+    method : {"euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3",
+    "rk4", \
 "nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", ...}, optional
         By default the one that the scene needs: "taylor" where a contact or a friction must be located inside the step
-        (touch, impact, sticking), else "rk4". The program's notes say which was taken, and why.
-        ``hl.methods.table()`` tables the explicit ones: order, cost, where each is stable; ``hl.methods.order_of`` says what
-        order the error of a scene's force has. "semi_implicit_euler_damped" takes dampers implicitly, however stiff.
-        "nystrom4" is for accelerations free of velocities, the Adams-Bashforth methods are for motion without cases.
-        "taylor" locates the instants at which walls, contacts and friction change the motion; between them it is exact
-        to rounding where the motion is linear. :class:`~hapticlab.compiler.events.taylor_method.Taylor` sets its order
-        and events. "exact" advances linear equations of motion by their matrix exponential, whose constants it makes of
-        parameters that are not ``live``: no step error at any stiffness. Of what is linear between switches (walls,
-        contacts, friction) it makes a map a mode, and locates the switches. With "+rk4" rk4 takes what is not linear.
+        (touch, impact, sticking), else "rk4". The program's notes say which was chosen, and why. ``hl.methods.table()``
+        lists the explicit methods with order, cost and stable range; ``hl.methods.order_of`` gives the order of the
+        error of a scene's force. "semi_implicit_euler_damped" treats dampers implicitly, however stiff. "nystrom4" is
+        for accelerations free of velocities, the Adams-Bashforth methods are for motion without cases. "taylor" locates
+        the instants at which walls, contacts and friction change the motion; between them it is exact to rounding where
+        the motion is linear. :class:`~hapticlab.compiler.events.taylor_method.Taylor` sets its order and events.
+        "exact" advances linear equations of motion by their matrix exponential, computed from parameters that are not
+        ``live``, without step error at any stiffness. For motion that is linear between switches (walls, contacts,
+        friction) it computes one map per mode and locates the switches. With "+rk4", rk4 advances the nonlinear part.
     T : float or str
         Sampling period [s], > 0, or a text with its unit, ``"1 ms"``.
     substeps : int
         Steps per period, >= 1.
     hold : {"zoh", "foh", "soh"}
-        Or a record, as ``hl.methods.SecondOrderHold``. How an equation of motion sees x(t) and v(t) between samples (see
-        :class:`~hapticlab.compiler.tick.handle_samples.Handle`). It sets the accuracy more than the method does: a held
-        sample ("zoh") costs RK4 ten percent of the force.
+        Or a record, as ``hl.methods.SecondOrderHold``. How an equation of motion sees x(t) and v(t) between samples
+        (see :class:`~hapticlab.compiler.tick.handle_samples.Handle`). It affects the accuracy more than the method
+        does: with a held sample ("zoh") RK4 has an error of ten percent of the force.
     dtype : {"float32", "float64"}
-        float32 is what a board runs.
+        A board runs float32.
     velocity : {"backward_difference", "measured"}
-        Where v(n) comes from; "measured" asks the paddle for it.
+        Source of v(n); with "measured" the paddle gives it.
     live : str or sequence of names or Parameters, optional
-        Parameters that stay settable while running, by default all but those that constraints hold; the others become
-        constants.
+        Parameters that you can change while the scene runs, by default all except those in constraints; the others
+        become constants.
     force_at : {"before", "after", "mean"}
-        With which states the force is computed. ``"before"``: those at the sample, so that F(n) is the force at that
-        instant. ``"after"``: those at the end of the period, with the sample x(n), v(n), as a loop that moves its bodies
-        first does it; what difference equations and channels hold stays that of the sample. ``"mean"``: the mean of F
-        over the period as the equations of motion see it, with x(t) of ``hold``, so that the impulse felt is the impulse
-        that the bodies are given.
+        The states from which the force is computed. ``"before"``: those at the sample, so that F(n) is the force at
+        that instant. ``"after"``: those at the end of the period, with the sample x(n), v(n), as a loop that moves its
+        bodies first does it; what difference equations and channels hold stays that of the sample. ``"mean"``: the mean
+        of F over the period as the equations of motion see it, with x(t) of ``hold``, so that the impulse at the handle
+        equals the impulse on the bodies.
 
     Returns
     -------

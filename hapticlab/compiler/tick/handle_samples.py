@@ -11,7 +11,7 @@ from ..ir.program import Channel
 
 @dataclass(frozen=True, repr=False)
 class Hold(ShowsItself):
-    """How an equation of motion sees the handle between two samples; printing it says so.
+    """The model of the handle between two samples in an equation of motion; ``print`` describes it.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Hold(ShowsItself):
     cost : str
     source : str
     confused_with : str
-        What it is taken for, and how that differs.
+        A law with which it is confused, and the difference.
     """
 
     name: str

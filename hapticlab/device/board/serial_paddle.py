@@ -65,8 +65,8 @@ def is_refusal(problem):
 class SerialPaddle(Paddle):
     """A paddle whose firmware runs the scene; made by :func:`hapticlab.connect`.
 
-    The motor goes off when :meth:`run` or :meth:`wait` is interrupted, when the paddle is closed, and when nothing refers to
-    it any more. A scene begun by :meth:`start` runs as long as this computer's program lives and holds the paddle.
+    The motor switches off when :meth:`run` or :meth:`wait` is interrupted, when the paddle is closed, and when nothing
+    refers to it. A scene begun by :meth:`start` runs as long as this program lives and holds the paddle.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class SerialPaddle(Paddle):
 
     @property
     def device(self) -> Device:
-        """The numbers that the board keeps, as limits read them."""
+        """The constants that the board stores, for limits."""
         return Device(T=self.T) if self.settings is None else self.settings.device(self.T)
 
     def accept(self, program: Program) -> Program:
@@ -228,7 +228,7 @@ class SerialPaddle(Paddle):
                 self._run.changes.append(((tick + 1) * self.T, numbers))
 
     def wait(self, seconds: Number) -> None:
-        """Let the scene run for so many seconds of the board's time, or until a fault, which is told.
+        """Let the scene run for a number of seconds of the board's time, or until a fault, which is reported.
 
         Interrupted, it switches the motor off; :meth:`stop` returns what was recorded until then.
         """
@@ -253,13 +253,13 @@ class SerialPaddle(Paddle):
             return run.telemetry(ticks=ticks, delay=self.timing.mean, paddle=str(self))
 
     def clear(self) -> None:
-        """Say which fault stands, if one does, and clear it: the board takes a scene again. The motor stays off."""
+        """Report a pending fault, if there is one, and clear it, so that the board accepts a scene again; the motor stays off."""
         for sentence in cleared(self.exchange, self.url):
             self.exchange.beating = False  # what ran had ended
             print(sentence)
 
     def home(self, at: Number | None = None, *, timeout: Number = 60.0) -> None:
-        """Tell the board where the handle is; it forgets with every reset, and gives no force until it knows.
+        """Find the position of the handle, which the board loses at every reset; it gives no force before.
 
         Parameters
         ----------
@@ -275,7 +275,7 @@ class SerialPaddle(Paddle):
         """Write a scene into the board's memory that survives power-off, arm it, and return what starts it, in words.
 
         After power-on without a computer the board waits for a deliberate act that also tells it where the handle is. A
-        computer that says hello takes the board back. Parameters are fixed at their values: nobody is there to set them.
+        computer that says hello takes the board back. Parameters are fixed at their values.
 
         Parameters
         ----------
@@ -317,7 +317,7 @@ class SerialPaddle(Paddle):
             return GESTURE
 
     def forget(self) -> None:
-        """Have the board wait for a computer after power-on again."""
+        """Make the board wait for a computer after power-on again."""
         with self._lock:
             self._require_idle("forget")
             self.exchange.command("ARM", 0, patience=STORE_PATIENCE, tries=2)
@@ -341,7 +341,7 @@ class SerialPaddle(Paddle):
         return self.exchange.refresh()
 
     def close(self) -> None:
-        """Stop the motor and give the port back."""
+        """Stop the motor and close the port."""
         with self._lock:
             try:
                 if self.exchange.broken is None:
@@ -439,7 +439,7 @@ class SerialPaddle(Paddle):
         self.exchange.give(run and run.add)
 
     def abandon(self) -> None:
-        """Motor off, and nothing recorded any more."""
+        """Switch off the motor and stop recording."""
         self._listen(None)
         self._motor_off()
 

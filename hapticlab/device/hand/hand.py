@@ -31,17 +31,18 @@ _REASONS = {
 class Hand(ShowsItself):
     """A hand lumped on the handle: (m + m_hand) x'' = push - b_hand (x' - intent') - k_hand (x - intent) - ...
 
-    A linear hand that does not react: it holds for some 30 ms after contact, before reflexes. Passive with push = 0 and
-    a resting intent.
+    A linear hand that does not react, a model of the first 30 ms or so after contact, before reflexes. It is passive
+    with push = 0 and a constant intent.
 
     Parameters
     ----------
     preset : {"pinch", "grip", "arm", "test bed finger"}, optional
         Where mass, damping and stiffness come from unless given; ``hl.people.hand_presets()`` has the sources.
     grip : float
-        Times as firm as the preset, > 0. A firmer grip stiffens and damps and leaves the mass as it is (found for a pinched
-        knob by Hasser and Cutkosky, 2002). Here stiffness and damping both grow in proportion to ``grip``: the simplest law
-        of that kind, fitted to nobody. Identify your own hand where it matters.
+        Firmness relative to the preset, > 0. A firmer grip increases stiffness and damping and leaves the mass
+        unchanged (found for a pinched knob by Hasser and Cutkosky, 2002). Here stiffness and damping both grow in
+        proportion to ``grip``, the simplest law of that kind, which was not fitted to measurements. If the values
+        matter, identify your own hand.
     m : float or text
         Mass [kg], m >= 0.
     b : float or text
@@ -51,15 +52,16 @@ class Hand(ShowsItself):
     push : float or text
         Constant force on the handle [N], positive into the wall.
     intent : None, float, text or callable, optional
-        Where the hand means to be [m]: a place, or a function of an array of times [s] that returns as many positions
-        [m]. It is sampled at the ticks and linear in between. It acts through k or b.
+        Target position of the hand [m]: a position, or a function of an array of times [s] that returns as many
+        positions [m]. It is sampled at the ticks and linear in between. It acts through k or b.
     push_noise : float or text
-        Standard deviation of a white Gaussian force beside the push [N], held over each sample; the paddle's seed draws it.
+        Standard deviation of a white Gaussian force in addition to the push [N], held over each sample; it is drawn
+        with the seed of the paddle.
 
     Raises
     ------
     PaddleError
-        For a negative or non-finite value, and for an intent with nothing to act through.
+        For a negative or non-finite value, and for an intent without a spring or damper through which it acts.
 
     Examples
     --------

@@ -98,7 +98,7 @@ class MinimumJerk(ShowsItself, Intent):
 
 @dataclass(frozen=True, kw_only=True)
 class Tremor(ShowsItself, Intent):
-    """Physiological tremor: a narrow band of noise, drawn once, as so many sinusoids of random phase.
+    """Physiological tremor: a narrow band of noise, drawn once, as a number of sinusoids of random phase.
 
     The hand's tremor has its peak between 6 and 12 Hz (Lakie et al., J. Physiol. 593, 2015); the amplitude is yours to
     give, for it differs widely between people, postures and tasks.
@@ -106,8 +106,8 @@ class Tremor(ShowsItself, Intent):
     Parameters
     ----------
     rms : float
-        Root mean square of the intent's tremor [m], >= 0, over a time long beside lines/(high - low). The handle's own is
-        what hand and handle make of it.
+        Root mean square of the intent's tremor [m], >= 0, over a time long beside lines/(high - low). The handle's own
+        is what hand and handle make of it.
     low, high : float
         Edges of the band [Hz], 0 < low < high.
     lines : int

@@ -47,17 +47,17 @@ class Seen:
 
 @dataclass(frozen=True, kw_only=True)
 class Reacting(ShowsItself, Intent):
-    """An intent that answers what happened, a reaction time ago: the feedback path of Section 23.3.3.
+    """An intent that responds to the motion one reaction time earlier: the feedback path of Section 23.3.3.
 
-    Every so often the plan is asked where to be by the next time; the hand moves there in a straight line. What the plan
-    knows ends a reaction time before it is asked. Runs on a simulated paddle alone.
+    Every so often the plan is asked where to be by the next time; the hand moves there in a straight line. What the
+    plan knows ends a reaction time before it is asked. Runs on a simulated paddle alone.
 
     Parameters
     ----------
     plan : callable
-        ``plan(t, seen, intent)`` gives the intent [m] at the time t [s]. ``seen`` (:class:`Seen`) has arrays t, x, v, F and
-        the watched states; empty at first. x is the handle itself, also under an encoder. ``intent`` is where the hand means
-        to be now [m]: a plan that adds to it needs no memory of its own.
+        ``plan(t, seen, intent)`` gives the intent [m] at the time t [s]. ``seen`` (:class:`Seen`) has arrays t, x, v, F
+        and the watched states; empty at first. x is the handle itself, also under an encoder. ``intent`` is where the
+        hand means to be now [m]: a plan that adds to it needs no memory of its own.
     reaction : float
         [s], >= 0; 180 ms in the chapter.
     interval : float
@@ -111,7 +111,7 @@ class Reacting(ShowsItself, Intent):
         )
 
     def with_path(self, path: Callable[..., Any]) -> Reacting:
-        """Return this plan with a path of time beside it, :class:`Tremor` for one."""
+        """Return this plan with an added path of time, such as :class:`Tremor`."""
         if isinstance(path, Reacting):
             raise PaddleError("this hand has two plans; give one Reacting(plan=...) that does the work of both.")
         return replace(self, beside=path if self.beside is None else Together((self.beside, path)))

@@ -21,7 +21,7 @@ DURATIONS = (0.01, 600.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Rehearsal(ShowsItself):
-    """What the hand does for ``view.rehearsal``, where nobody recorded.
+    """The motion of a simulated hand for ``view.rehearsal``, if there is no recording.
 
     Parameters
     ----------

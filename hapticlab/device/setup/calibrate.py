@@ -25,33 +25,33 @@ STEPS = ("stops", "sign", "force")
 def calibrate(
     paddle: SerialPaddle, person: Person | None = None, *, date: int | None = None, only: str | None = None
 ) -> Settings | None:
-    """Measure what a paddle is and store it on its board; nothing is written that the person did not agree to.
+    """Measure the constants of a paddle and store them on its board, if the person agrees.
 
     Parameters
     ----------
     paddle : SerialPaddle
     person : Person, optional
-        Who holds the handle and answers; by default whoever sits at this terminal.
+        The person who holds the handle and answers; by default the person at this terminal.
     date : int, optional
-        Of the calibration, with which it is kept: today by default, as 20261120.
+        Date that is stored with the calibration, such as 20261120; today by default.
     only : {"stops", "sign", "force"}, optional
         This step alone.
 
     Returns
     -------
     Settings or None
-        What the board keeps now; None where the person gave up before there was anything to keep.
+        The settings that the board stores now, or None if the person stopped before there were any.
 
     Raises
     ------
     PaddleError
-        If a step's numbers make no sense; what was stored before stays.
+        If the numbers of a step are implausible; the settings stored before stay.
 
     Notes
     -----
-    Stops: two sweeps with the handle led from stop to stop, and the travel between them with a ruler. Sign: see
-    hapticlab.device.setup.sign_check. Force: a kitchen scale or a hanging weight, least squares. Mass, damping, friction,
-    heating and speed limits stay nominal: a lab identifies them.
+    Stops: two sweeps in which the person moves the handle from stop to stop, and the travel measured with a ruler.
+    Sign: see hapticlab.device.setup.sign_check. Force: a kitchen scale or a hanging weight, least squares. Mass,
+    damping, friction, heating and speed limits stay nominal: a lab identifies them.
     """
     if only is not None and only not in STEPS:
         raise PaddleError(f"only = {only!r}; needs one of the steps {', '.join(STEPS)}, or None for all.")

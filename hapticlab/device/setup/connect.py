@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 def connect(
     port: str | None = None, *, T: Number | None = None, paddle: SimulatedPaddle | None = None, hello: Number = 3.0
 ) -> SerialPaddle:
-    """Connect to a paddle and return it; use it in a ``with``, which leaves the motor off whatever happens.
+    """Connect to a paddle and return it; a ``with`` statement leaves the motor off whatever happens.
 
     Parameters
     ----------
     port : str, optional
-        ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. Without it the ports
-        whose USB numbers are of a known kind of board are asked, and only one that answers as a paddle is taken.
+        ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. Without it, only
+        ports with the USB numbers of a known board are tried, and the one that answers as a paddle is used.
     T : float or text, optional
         Sampling period [s], whole microseconds within the board's range; 1 ms, or that of ``paddle``.
     paddle : SimulatedPaddle, optional

@@ -49,15 +49,15 @@ class Report(ShowsItself):
 
 
 def doctor(url: str | None = None, person: Person | None = None, *, tell: Callable[[Any], Any] = lambda check: None) -> Report:
-    """Walk through notebook, rights, cable, port, firmware, settings, latency, loop, link, sensor, home and motor sign.
+    """Check notebook, rights, cable, port, firmware, settings, latency, loop, link, sensor, home and motor sign in turn.
 
     Parameters
     ----------
     url : str, optional
         A port; without it the one whose USB numbers are of a known board.
     person : Person, optional
-        Who moves the handle when asked; None skips what needs one, and says so. Force, 0.5 N at most, is given only in
-        the check of the motor's sign, and only if the person agrees.
+        The person who moves the handle when asked; None skips the checks that need a person, and says so. The motor
+        gives a force, at most 0.5 N, only in the check of its sign, and only if the person agrees.
     tell : callable
         Called with every Check as it is made.
 

@@ -52,9 +52,10 @@ _NOT_NEGATIVE = {
 class SimulatedPaddle(Paddle):
     """The sampled-data handle of Fig. 23.6: M x'' = push - F - b x' - coulomb sign(x') - k_h (x - intent) - ...
 
-    Exact between samples for any m, b, T: without Coulomb friction by the matrix exponential, and closed forms where it
-    would lose its digits (a light handle that is damped, or on a stiff spring); with it, stops, sticking and
-    break-away are located inside the sample. Only what is given is compiled in; ``print(paddle)`` says what that is.
+    The motion between samples is exact for any m, b and T. Without Coulomb friction it uses the matrix exponential, or
+    closed forms where the exponential would lose digits (a light handle that is damped, or on a stiff spring). With
+    Coulomb friction, stops, sticking and break-away are located inside the sample. Only the effects that are given are
+    compiled in; ``print(paddle)`` lists them.
 
     Parameters
     ----------
@@ -65,7 +66,7 @@ class SimulatedPaddle(Paddle):
     T : float or text
         Sampling period [s], T > 0.
     delay : float or text
-        Computational delay [s], delay >= 0, whole or not: the force computed from sample n is felt from n T + delay on.
+        Computational delay [s], delay >= 0, whole or not: the force computed from sample n acts after n T + delay.
     counts_per_metre : float or text, optional
         Encoder counts per metre [1/m]. The scene then sees counts/counts_per_metre, in its own precision, and v by
         backward difference. Without encoder and noise it sees x, and v exactly.
@@ -86,7 +87,8 @@ class SimulatedPaddle(Paddle):
     Raises
     ------
     PaddleError
-        For every value out of its range, and a mass too small for numbers to move: the least that will do is named.
+        For a value out of its range, and for a mass that is too small for the arithmetic; the message names the least
+        mass.
 
     Examples
     --------

@@ -45,7 +45,8 @@ class impulse(ShowsItself, ContactLaw):
         acceleration that closes the gap. None: exactly the rebounds that would be back within a period rest.
     impacts : {"sequential", "simultaneous"}
     mu : number, Parameter or expression, >= 0
-        Friction: the tangential impulse opposes the slip, at most mu times the normal one. Needs the contact's ``slip``.
+        Friction: the tangential impulse opposes the slip, at most mu times the normal one. Needs the contact's
+        ``slip``.
 
     Examples
     --------
@@ -93,8 +94,8 @@ class micro_impulse(ShowsItself, ContactLaw):
     """Repeated impulses at the end of each step, for lasting contact too.
 
     Mirtich and Canny, *Impulse-based simulation of rigid bodies*, Symp. Interactive 3D Graphics (1995) 181-188: no
-    constraint and no mode; a body at rest is held by a train of tiny collisions. A fast approach rebounds with e. A slow
-    one, which gravity alone could have given in one step, rebounds as it came, more the deeper it lies in the
+    constraint and no mode; a body at rest is held by a train of tiny collisions. A fast approach rebounds with e. A
+    slow one, which gravity alone could have given in one step, rebounds as it came, more the deeper it lies in the
     envelope, so that it hovers there. Nothing is located: positions are right to the order of the step, and the gap is
     negative by at most the approach of one step.
 
@@ -134,11 +135,11 @@ class micro_impulse(ShowsItself, ContactLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class rigid(ShowsItself, ContactLaw):
-    """Rigid contact without rebound: the reaction keeps the gap closed while it pushes, and lets go when it would pull.
+    """Rigid contact without rebound: the reaction keeps the gap closed while it pushes, and ends when it would pull.
 
-    The reactions solve the linear complementarity problem 0 <= N, 0 <= d2gap/dt2, N d2gap/dt2 = 0 (Baraff, *Fast contact
-    force computation for nonpenetrating rigid bodies*, SIGGRAPH 1994, 23-34), exactly, by trying every set of active
-    contacts. An impact on the way in is plastic, e = 0.
+    The reactions solve the linear complementarity problem 0 <= N, 0 <= d2gap/dt2, N d2gap/dt2 = 0 (Baraff, *Fast
+    contact force computation for nonpenetrating rigid bodies*, SIGGRAPH 1994, 23-34), exactly, by trying every set of
+    active contacts. An impact on the way in is plastic, e = 0.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ def wall(
     clamp: bool = False,
     velocity: VelocityEstimate | None = None,
 ) -> Scene:
-    """Virtual wall: a spring K that pushes back beyond x_o, and a virtual damper B beside it.
+    """Virtual wall: a spring K that pushes back beyond x_o, with a virtual damper B in parallel.
 
     ======================  =======  ====================================================
     law                     Eq.      spring force, with p = x - x_o
@@ -55,17 +55,17 @@ def wall(
     ----------
     law : {"zoh", "half_sample", "backward_difference", "ellis"}
     k, B, x_o : float or text, optional
-        Stiffness [N/m] >= 0, damping [N s/m] of either sign, and where the wall begins [m], if they are to be bound at once.
+        Stiffness [N/m] >= 0, damping [N s/m] of either sign, and boundary [m], to bind them at once.
     unilateral : {"gate", "clip", None}
         ``"gate"``: spring and damper act on the raw past and are zero where x(n) < x_o, as Eq. (23.1) reads.
-        ``"clip"``: they act on max(p, 0), now and in the past, and so may act for two samples after leaving; a
-        ``half_sample`` wall takes the velocity as zero outside. ``None``: they always act; the linear law of the
-        bounds.
+        ``"clip"``: they act on max(p, 0), present and past, and so may act for two samples after the handle leaves; a
+        ``half_sample`` wall uses zero velocity outside. ``None``: they always act; the linear law of the bounds.
     clamp : bool
         Never pull: F is replaced by max(F, 0).
     velocity : VelocityEstimate, optional
-        What damper and ``half_sample`` take for v(n): :func:`~hapticlab.scene.laws.estimators.filtered_velocity` and the
-        others beside it. With ``"clip"`` it counts inside only.
+        The estimate of v(n) for the damper and ``half_sample``:
+        :func:`~hapticlab.scene.laws.estimators.filtered_velocity` or a similar one. With ``"clip"`` it is used inside
+        only.
 
     Returns
     -------
@@ -119,9 +119,9 @@ def force_filter(scene: Scene, clamp: bool = False) -> Scene:
     """Predictor-corrector filter around the whole force of any scene, Eq. (23.8): 2 F(n) - 1.5 F(n-1) + 0.5 F(n-2).
 
     On a plain wall without a switch it equals :func:`wall` with ``law="ellis"``, Eq. (23.7). Around a spring and damper
-    it filters both, which asks for more device damping than filtering the spring alone. It filters what is felt, and knows
-    nothing of boundaries: a force that jumps to F is felt as 2 F, F/2, F, and after leaving a wall as -1.5 F(n-1) +
-    0.5 F(n-2), a pull, and then as half the last force. ``clamp`` keeps a wall from pulling.
+    it filters both, which asks for more device damping than filtering the spring alone. It filters what is felt, and
+    knows nothing of boundaries: a force that jumps to F is felt as 2 F, F/2, F, and after leaving a wall as -1.5 F(n-1)
+    + 0.5 F(n-2), a pull, and then as half the last force. ``clamp`` keeps a wall from pulling.
 
     Parameters
     ----------

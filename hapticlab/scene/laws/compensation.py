@@ -31,16 +31,16 @@ def damping_compensation(
     sign: str = "smooth",
     velocity: VelocityEstimate | None = None,
 ) -> Scene:
-    """Cancel a part of a device's friction: F = -viscous b v(n) - dry coulomb s(v(n)), negative virtual damping.
+    """Cancel a fraction of a device's friction: F = -viscous b v(n) - dry coulomb s(v(n)), negative virtual damping.
 
     The physical damper stays, and with it the passivity that it buys at all frequencies; the compensation acts where
     the hand is slow. So Eq. (23.10) reads b > K T/2 + viscous b in a wall K in which the compensation acts: of what is
     compensated there nothing is left for the wall. A compensation in free air only leaves most of it;
     :func:`~hapticlab.analysis.stability.worst_motion.worst_motion` searches how much.
 
-    Beyond ``viscous`` = 1, or ``dry`` = 1, the paddle runs away, and sooner where its friction is less than b and coulomb
-    say: :func:`~hapticlab.rendering.compensation_limit.compensation_limit` tells how much of an identified friction is
-    safe.
+    Beyond ``viscous`` = 1, or ``dry`` = 1, the paddle runs away, and sooner where its friction is less than b and
+    coulomb say: :func:`~hapticlab.rendering.compensation_limit.compensation_limit` tells how much of an identified
+    friction is safe.
 
     Parameters
     ----------

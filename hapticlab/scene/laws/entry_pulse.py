@@ -1,9 +1,9 @@
 """Pulses on entering a wall: what meets the handle first is a brake, and the spring only has to hold it.
 
-A wall that stops a handle by its spring needs a stiffness that the sampling period cannot carry. A brake of a few periods
-takes the momentum instead, and the wall feels harder at the same K: Salcudean and Vlaar, *On the emulation of stiff walls
-and static friction with a magnetically levitated input/output device*, J. Dynamic Systems, Measurement, and Control 119
-(1997) 127-132.
+A wall that stops a handle by its spring needs a stiffness that the sampling period cannot carry. A brake of a few
+periods takes the momentum instead, and the wall feels harder at the same K: Salcudean and Vlaar, *On the emulation of
+stiff walls and static friction with a magnetically levitated input/output device*, J. Dynamic Systems, Measurement, and
+Control 119 (1997) 127-132.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LONGEST_PULSE = 1000
 
 @dataclass(frozen=True, kw_only=True)
 class Entry(ShowsItself):
-    """Where the handle enters, and the speed that it is taken to come in with.
+    """The boundary at which the handle enters, and the estimate of its entry speed.
 
     Parameters
     ----------
@@ -72,12 +72,12 @@ def braking_pulse(
     entry: Entry = ENTRY,
     name: str = "brake",
 ) -> Scene:
-    """Add a braking pulse on entry: so much impulse, or so much of the momentum that the handle comes in with.
+    """Add a braking pulse on entry: a given impulse, or a fraction of the momentum of the handle.
 
     The pulse begins at the first sample inside and lasts ``periods`` T. It ends sooner where the handle has stopped or
-    left, so that it brakes and does not throw. A free handle of this mass without friction comes out of it with the part
-    (1 - part) of its speed, exactly where v(n) is exact and the delay zero; a damper b takes less than b periods T/mass
-    more. A speed from an encoder of count D is known to D/T only: give the ``entry`` a velocity that is better.
+    left, so that it brakes and does not throw. A free handle of this mass without friction comes out of it with the
+    part (1 - part) of its speed, exactly where v(n) is exact and the delay zero; a damper b takes less than b periods
+    T/mass more. A speed from an encoder of count D is known to D/T only: give the ``entry`` a velocity that is better.
 
     Parameters
     ----------
@@ -139,16 +139,16 @@ def friction_pulse(
     entry: Entry = ENTRY,
     name: str = "friction",
 ) -> Scene:
-    """Add dry friction for a while after entry: it opposes the motion, either way, and holds what has stopped.
+    """Add dry friction for some time after entry: it opposes motion in both directions, and holds a handle that has stopped.
 
     For ``periods`` T from the first sample inside the force is ``friction`` against the motion, and never more than
     stops this mass within the next period, mass v(n)/T: the part of Karnopp's friction that a sampled force can render.
-    A free handle decelerates by friction/mass and then stops within one period, exactly where v(n) is exact and there is
-    neither damper nor delay; ``periods`` must last for both, or some speed is left.
+    A free handle decelerates by friction/mass and then stops within one period, exactly where v(n) is exact and there
+    is neither damper nor delay; ``periods`` must last for both, or some speed is left.
 
-    A wrong mass: where ``friction`` does not limit it, the part 1 - mass/m of the speed is left from one period to the next,
-    m the true one. So too small a mass only takes longer. One too large turns the handle at every period, and may throw
-    it back out, though below 2 m never faster than it was; from 2 m on it shakes ever more, up to ``friction``.
+    A wrong mass: where ``friction`` does not limit it, the part 1 - mass/m of the speed is left from one period to the
+    next, m the true one. So too small a mass only takes longer. One too large turns the handle at every period, and may
+    throw it back out, though below 2 m never faster than it was; from 2 m on it shakes ever more, up to ``friction``.
 
     A delay of d whole periods: with the right mass it swings, from d = 1 on without end. Give the part
     d^d/(d + 1)^(d + 1) of the mass, 1/4 for one period and 4/27 for two, and it stops without turning.

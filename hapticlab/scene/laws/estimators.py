@@ -53,7 +53,7 @@ class VelocityEstimate(ShowsItself):
     source : str
         Where it is from.
     confused_with : str
-        What it is taken for, and how that differs.
+        A law with which it is confused, and the difference.
 
     Examples
     --------

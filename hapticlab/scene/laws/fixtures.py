@@ -20,15 +20,16 @@ if TYPE_CHECKING:
 
 
 def guidance(path: sp.Expr) -> Scene:
-    """Guidance fixture: a controller's spring and damper lead the handle along a path, and give way beyond F_max.
+    """Guidance fixture: a controller's spring and damper guide the handle along a path, and yield beyond F_max.
 
-    Hand and controller pull on one handle (shared control, Section 23.1.3): the hand feels where the controller means to
-    go, follows, or overrides it. F = clip(k (x - path) + b (v - path'), -F_max, F_max).
+    Hand and controller pull on one handle (shared control, Section 23.1.3): the hand feels where the controller means
+    to go, follows, or overrides it. F = clip(k (x - path) + b (v - path'), -F_max, F_max).
 
     Parameters
     ----------
     path : expression [m]
-        Where the controller means to be, of ``hl.t`` and parameters with units, or one coordinate of an equation of motion.
+        Where the controller means to be, of ``hl.t`` and parameters with units, or one coordinate of an equation of
+        motion.
 
     Returns
     -------
@@ -56,9 +57,9 @@ def guidance(path: sp.Expr) -> Scene:
 def tremor_filter(centre: Term = "10 Hz", bandwidth: Term = "6 Hz") -> Scene:
     """Tremor filter: a damper B that acts within a band of frequencies and leaves slow motion alone.
 
-    The velocity passes a digital band-pass of second order: gain 1 and no phase at the centre, half the power at the two
-    edges, exactly, nothing at rest and at Nyquist (the bilinear transform, both frequencies prewarped). F is B times what
-    passes, so that the hand's own tremor shrinks, not only its record.
+    The velocity passes a digital band-pass of second order: gain 1 and no phase at the centre, half the power at the
+    two edges, exactly, nothing at rest and at Nyquist (the bilinear transform, both frequencies prewarped). F is B
+    times what passes, so that the hand's own tremor shrinks, not only its record.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """Passivity observer and controller around any scene, in the time domain (Hannaford and Ryu 2002), as scenes themselves.
 
-A force sent at sample n is held while the handle moves from x(n) to x(n+1). At sample n the work done on the environment
-is therefore known exactly, F(n-1) (x(n) - x(n-1)) for each period; F(n) (x(n) - x(n-1)) would be the work of a force that
-nobody felt, and calls a wall that generates energy a damper. The exact pairing is that of Ryu, Kim and Hannaford (2004).
+A force sent at sample n is held while the handle moves from x(n) to x(n+1). At sample n the work done on the
+environment is therefore known exactly, F(n-1) (x(n) - x(n-1)) for each period; F(n) (x(n) - x(n-1)) would be the work
+of a force that nobody felt, and calls a wall that generates energy a damper. The exact pairing is that of Ryu, Kim and
+Hannaford (2004).
 """
 
 from __future__ import annotations
@@ -47,8 +48,8 @@ def passivity_observer(scene: Scene, *, lag: int = 0) -> Scene:
     """The scene with a passivity observer: the watched W [J] is the work done on the environment so far.
 
     W(n) = W(n-1) + F(n-1-lag) (x(n) - x(n-1)), exact where the force is held over whole periods: below zero the
-    environment has given more than it took. The force is the scene's own. It sees what the scene sends at the place
-    the sensor reads: a motor that saturates, or an encoder's counts, are between that and the work at the handle. It starts
+    environment has given more than it took. The force is the scene's own. It sees what the scene sends at the place the
+    sensor reads: a motor that saturates, or an encoder's counts, are between that and the work at the handle. It starts
     from zero: a spring that is loaded at the first sample gives back what nobody was seen to pay.
 
     Parameters
@@ -81,20 +82,21 @@ def passivity_observer(scene: Scene, *, lag: int = 0) -> Scene:
 
 @dataclass(frozen=True, kw_only=True)
 class Credit(ShowsItself):
-    """What counts as the credit of an environment that a passivity controller keeps, and what is struck off.
+    """How a passivity controller computes the energy credit of an environment, and how it limits the credit.
 
     Parameters
     ----------
     stored : expression [J]
-        What the environment stores, such as :func:`wall_energy`, also at the first sample; zero lets every credit count.
-        With it the controller follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): it acts as soon
-        as energy is generated, not only once everything stored was given back.
+        What the environment stores, such as :func:`wall_energy`, also at the first sample; zero lets every credit
+        count. With it the controller follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): it acts
+        as soon as energy is generated, not only once everything stored was given back.
     forget : float or text [s], optional
-        Time constant with which credit is forgotten: spent at the power at which it was earned, it lasts forget*ln 2 at most.
+        Time constant with which credit is forgotten: spent at the power at which it was earned, it lasts forget*ln 2 at
+        most.
     credit_max : float or text [J], optional
-        Credit beyond is struck off.
+        Credit above this value is removed.
     reset : float or text [s], optional
-        All credit is struck off once the scene's own force has been zero for so long: between two contacts.
+        All credit is removed when the scene's own force has been zero for this time, between two contacts.
 
     Examples
     --------
@@ -126,14 +128,14 @@ def passivity_controller(
     predict: bool = False,
     lag: int = 0,
 ) -> Scene:
-    """The scene with a passivity controller, which dissipates what the environment gave beyond what it had.
+    """The scene with a passivity controller, which dissipates the energy that the environment generated.
 
     The watched credit is what the port has taken since the start, less what the environment stores and less what was
     struck off by ``forget``, ``credit_max`` and ``reset``. It is kept from staying below zero
 
     * by a damper, ``form="series"``: F = f + alpha (x(n) - x(n-1))/T, with alpha = -credit T/(x(n) - x(n-1))^2. Both
-      share the motion and their forces add. It takes back whatever is owed, from any scene, as long as the handle moves;
-      it cannot act on a handle at rest, and is felt as drag, after a contact too.
+      share the motion and their forces add. It takes back whatever is owed, from any scene, as long as the handle
+      moves; it cannot act on a handle at rest, and is felt as drag, after a contact too.
     * by a dashpot in line, ``form="parallel"``: the scene sees x - slip, and slip grows by T beta F a sample, with
       beta = -credit/(T F^2). Both share the force and their motions add; velocity estimates in ``eom`` see the handle
       itself. It lets go of what is stored before that is given back, at rest too; it takes nothing back outside, and a
@@ -141,13 +143,13 @@ def passivity_controller(
       ``stored``. The credit of a spring K stays within one period's leak, K/2 times the square of how far the spring
       moved, and the slip with the handle.
 
-    An Uno has time for the series form at 1 kHz, also with one of ``stored``, ``predict``, ``force_max``, ``credit_max``;
-    with ``forget`` at 900 Hz, with several of them, and for the parallel form, at 800 Hz.
+    An Uno has time for the series form at 1 kHz, also with one of ``stored``, ``predict``, ``force_max``,
+    ``credit_max``; with ``forget`` at 900 Hz, with several of them, and for the parallel form, at 800 Hz.
 
     A human who is active for long fills the credit of an environment that dissipates, which may then be active for as
-    long without being stopped. The cures are ``forget``, ``credit_max`` and ``reset`` of :class:`Credit`: they strike off
-    credit, never debt, and so leave the environment passive. With ``stored`` given, what the environment stores is not
-    forgotten.
+    long without being stopped. The cures are ``forget``, ``credit_max`` and ``reset`` of :class:`Credit`: they strike
+    off credit, never debt, and so leave the environment passive. With ``stored`` given, what the environment stores is
+    not forgotten.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from ...base.shows_itself import ShowsItself
 
 
 class SpringLaw(ShowsItself, str):
-    """A spring law: the text of its name, which ``law=`` takes, and what is known of it; printing it says that.
+    """A spring law by name, for ``law=``, with its properties, which ``print`` shows.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class SpringLaw(ShowsItself, str):
     lead : float
         Weight on T v[n].
     confused_with : str
-        What it is taken for, and how that differs.
+        A law with which it is confused, and the difference.
 
     Examples
     --------

@@ -99,7 +99,7 @@ class Mechanics(Typeset):
 
     @property
     def energy(self) -> sp.Expr:
-        """The energy [J] that a Lagrangian without time in it conserves: the sum of q' dL/dq', less L."""
+        """The energy [J] that a Lagrangian without explicit time conserves: the sum of q' dL/dq' minus L."""
         if self.lagrangian is None:
             raise SceneError("these equations came without a Lagrangian, so their energy is not known")
         rates = [q.diff(t) for q in self.coordinates]
@@ -107,7 +107,7 @@ class Mechanics(Typeset):
 
     @property
     def equations(self) -> tuple[sp.Eq, ...]:
-        """The equations in symbols, one ``sp.Eq`` a coordinate, worked out for a reader; slow past three links."""
+        """The equations in symbols, one ``sp.Eq`` per coordinate, evaluated for a reader; slow for more than three links."""
         unknowns = [q.diff(t, order) for q, order in zip(self.coordinates, self.orders, strict=True)]
         multipliers = sp.symbols(f"lambda1:{len(self.constraints) + 1}")
         made = []
@@ -148,7 +148,8 @@ def lagrange(
     """Lagrange's equations of motion, d/dt(dL/dq') - dL/dq + dR/dq' = Q, of every coordinate in L.
 
     Nothing is differentiated in symbols: the compiler does that on the graph of L, in a few milliseconds, so L may be
-    written as it comes, velocities of points included. Printing the result in a notebook shows the equations worked out.
+    written as it comes, velocities of points included. Printing the result in a notebook shows the equations worked
+    out.
 
     Parameters
     ----------

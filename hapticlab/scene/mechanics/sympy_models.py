@@ -29,29 +29,29 @@ def from_mechanics(
     replace: Mapping[Any, Any] | None = None,
     enforce: str = "auto",
 ) -> Mechanics:
-    """Take a model of ``sympy.physics.mechanics`` as it is: a LagrangesMethod, KanesMethod or System.
+    """Use a model of ``sympy.physics.mechanics`` unchanged: a LagrangesMethod, KanesMethod or System.
 
     Of a LagrangesMethod only the Lagrangian, the loads and the constraints are taken, so ``form_lagranges_equations()``
     need not be called, and is not; a derivative is taken by the compiler. Kane's equations are taken as
     ``kanes_equations()`` leaves them, neither simplified nor solved: in q alone where the speeds are u = q', or where
-    there are constraints; else in q and u. Constraints of the configuration are enforced as ``enforce`` says, so they do
-    not drift; SymPy's own right-hand side keeps their second rate alone.
+    there are constraints; else in q and u. Constraints of the configuration are enforced as ``enforce`` says, so they
+    do not drift; SymPy's own right-hand side keeps their second rate alone.
 
     Parameters
     ----------
     system : LagrangesMethod, KanesMethod or System
         A System whose equations have not been formed is asked to ``form_eoms()``.
     units : dict symbol or name -> str
-        SI units of coordinates, speeds and constants; ``"1"`` for those that are not there. Terms are checked where every
-        symbol has one.
+        SI units of coordinates, speeds and constants; ``"1"`` for those that are not there. Terms are checked where
+        every symbol has one.
     values : dict symbol or name -> number or text
         Of constants, which become parameters.
     initial : dict symbol, rate or name -> number, text or expression
         Where coordinates and speeds start; zero for those that are not there.
     replace : dict symbol or name -> expression
         What an input is: a force, a torque or a driven motion that is a function of time. Also what stands for a
-        constant or a coordinate, such as ``hl.coordinate("q", unit="rad", range=(-1, 1))``. A coordinate that is replaced
-        by ``x(t)`` moves with the handle and loses its equation.
+        constant or a coordinate, such as ``hl.coordinate("q", unit="rad", range=(-1, 1))``. A coordinate that is
+        replaced by ``x(t)`` moves with the handle and loses its equation.
     enforce : {"auto", "embed", "kkt", "baumgarte", "numeric"}
         How constraints are kept; see :func:`~hapticlab.scene.mechanics.lagrange.lagrange`.
 

@@ -29,7 +29,7 @@ class Piecewise(sp.Piecewise):
 
 
 def when(condition: Any, value: sp.Expr | float, otherwise: sp.Expr | float = 0) -> sp.Expr:
-    """A value where a condition holds, else another, as the cases of Eq. (23.1).
+    """One value where a condition holds and another value elsewhere, such as the cases of Eq. (23.1).
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def when(condition: Any, value: sp.Expr | float, otherwise: sp.Expr | float = 0)
     Raises
     ------
     SceneError
-        ``condition`` is no relation of expressions, such as the False that ``x(n) == x_o`` is in Python.
+        ``condition`` is not a relation of expressions, such as the False that ``x(n) == x_o`` gives in Python.
 
     Examples
     --------

@@ -62,13 +62,15 @@ def parameters(names: str, *, units: str, values: Any = None, ranges: Any = None
     Parameters
     ----------
     names : str
-        Names separated by spaces; none may be a word of Python, or what a scene or a record calls its own (x, T, delay).
+        Names separated by spaces; none may be a word of Python, or what a scene or a record calls its own (x, T,
+        delay).
     units : str
         One SI unit for each, separated by spaces; ``1`` for a pure number.
     values : number, sequence or dict, optional
         Default values in SI, or texts with a unit such as ``"10 mm"``; one for each name.
     ranges : (low, high), sequence of them, or dict, optional
-        Closed ranges in SI, one for each name. Without one a mass must be > 0, and a stiffness, damping or time >= 0.
+        Closed ranges in SI, one for each name. Without a range a mass must be > 0, and a stiffness, damping or time >=
+        0.
 
     Returns
     -------

@@ -38,7 +38,7 @@ def coordinate(
     Parameters
     ----------
     name : str
-        One word that no parameter, signal or other coordinate of the scene has, and no column of a record.
+        One word that is not the name of a parameter, a signal, another coordinate or a column of a record.
     unit : str
         SI unit, such as ``m`` or ``rad``.
     initial, rate : number, text with a unit, or expression
@@ -46,9 +46,9 @@ def coordinate(
         body can start at the handle.
         A coordinate with an equation of first order starts with its value alone.
     range : (low, high)
-        Where the coordinate stays, in SI. Contact pairs, cases and ranks are decided over it when a scene is compiled,
-        and a coordinate that leaves it while running is a fault: the motor goes off. A start outside is refused. Nothing
-        watches over a coordinate that no output can see, which a program leaves out.
+        Range of the coordinate, in SI. When a scene is compiled, contact pairs, cases and ranks are decided over this
+        range, so a coordinate that leaves it during a run is a fault, which switches the motor off. A start outside the
+        range is rejected. A coordinate on which no output depends is left out of the program and not checked.
 
     Returns
     -------
@@ -134,12 +134,13 @@ def signal(name: str, *, unit: str, initial: Term = 0, instead: Sequence[Velocit
     Parameters
     ----------
     name : str
-        One word that no parameter, coordinate or other signal of the scene has, and no column of a record.
+        One word that is not the name of a parameter, a coordinate, another signal or a column of a record.
     unit : str
     initial : number, text with a unit, or expression
         The value of every sample before the first, a number in ``unit``.
     instead : tuple of VelocityEstimate
-        What may stand in its place where a board has no time for it, dearest first; a refusal names what fits.
+        Cheaper estimates that can replace it if a board has too little time, the most expensive first; the error names
+        the one that fits.
 
     Returns
     -------
@@ -210,10 +211,11 @@ class v(_HandleSignal):
     """Velocity of the handle v_e [m/s]: v(n) at the present sample, v(t) in an equation of motion.
 
     In a force or a watched expression v(t) is the sample v(n), the plain backward difference on a board, while an
-    equation of motion may see it half a period further on (see :class:`~hapticlab.compiler.tick.handle_samples.Handle`). The two
-    differ by a T/2, with a the acceleration of the handle, on purpose: a force that looks ahead through a damper b asks
-    for b more damping from the device (2.29 instead of 1.29 N s/m at b = 1 N s/m). For a coupler the difference is
-    0.036 % of the force of its spring at 10 mm and 3 Hz (K = 500 N/m, b = 1 N s/m, T = 1 ms).
+    equation of motion may see it half a period further on (see
+    :class:`~hapticlab.compiler.tick.handle_samples.Handle`). The two differ by a T/2, with a the acceleration of the
+    handle, on purpose: a force that predicts through a damper b needs b more device damping (2.29 instead of 1.29 N s/m
+    at b = 1 N s/m). For a coupler the difference is 0.036 % of the force of its spring at 10 mm and 3 Hz (K = 500 N/m,
+    b = 1 N s/m, T = 1 ms).
     """
 
     unit = "m/s"
