@@ -22,7 +22,7 @@ def coast_fit(t, x):
 
 
 def mass_and_friction(A, rising, falling):
-    """Return mass [kg] and Coulomb friction [N]: the sum of the two slopes is 2 A/m, their difference 2 coulomb/m."""
+    """Return mass [kg] and Coulomb friction [N]: the accelerations add up to 2 A/m and differ by 2 coulomb/m."""
     m = 2 * A / (rising + falling)
     return {"m": m, "coulomb": m * (rising - falling) / 2}
 
@@ -36,17 +36,17 @@ def promised_stiffness(b_low, b_high, T, B):
 
 
 def hand_constants(M, sigma, omega, m, b):
-    """Return mass, damping and stiffness of the hand from the swing of handle and hand together."""
+    """Return mass, damping and stiffness of the hand from the oscillation of handle and hand together."""
     return {"m": M - m, "b": 2 * M * sigma - b, "k": M * (omega**2 + sigma**2)}
 
 
 which_window = "a"
 
 discussion = (
-    "One interval of 95 % in twenty misses, so among seven of them one outside happens in about a third of all labs and is no "
-    "reason to distrust the method; seven outside would be. Warming the paddle changes its damping, as grease thins, and a "
-    "loosened screw adds backlash, which the model lacks: the interval knows only the noise of this record, not what changes "
-    "between two days, and notices neither. The window of 60 ms shows that a model with enough freedom can fit data it is "
-    "wrong about: that the rest looks like noise is needed, and is not enough; the time at which reflexes begin has to come "
-    "from outside the fit."
+    "One 95 % interval in twenty misses the true value, so one OUTSIDE among seven happens in about a third of all labs and is "
+    "no reason to distrust the method; seven would be. If the paddle becomes warm, its damping changes because grease becomes "
+    "thinner, and a loosened screw adds backlash, which the model does not contain. The interval describes only the noise of "
+    "this recording and not the changes between two days, so it shows neither. The window of 60 ms shows that a model with "
+    "enough freedom can fit data although it is wrong. Residuals that look like noise are necessary but not sufficient, and "
+    "the time at which reflexes begin must come from another source."
 )

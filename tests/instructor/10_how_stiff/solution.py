@@ -11,7 +11,7 @@ prediction_walls = 10
 
 
 def part_right(k_1, k_2, weber):
-    """Return the part of trials in which the stiffer wall is picked: two looks, so twice the variance."""
+    """Return the proportion of trials in which the stiffer wall is picked: two presentations, so twice the variance."""
     d_prime = abs(log(k_2 / k_1)) / log(1 + weber)
     return NormalDist().cdf(d_prime / 2**0.5)
 
@@ -41,7 +41,7 @@ def log_likelihood(threshold, levels, right):
 
 
 def at_d_prime_1(level, part):
-    """Return the level at d' = 1: at the level given, d' is sqrt(2) times the normal quantile of the part."""
+    """Return the level at d' = 1: at the given level, d' is sqrt(2) times the normal quantile of the proportion."""
     return level / (2**0.5 * NormalDist().inv_cdf(part))
 
 
@@ -49,14 +49,14 @@ standard_first = "d"
 
 
 def steps_between(k_low, k_high, weber):
-    """Return how often a factor of 1 + weber fits between the two."""
+    """Return how many factors of 1 + weber lie between the two."""
     return log(k_high / k_low) / log(1 + weber)
 
 
 discussion = (
-    "My interval reaches from 15 to 31 percent and holds 23 percent, so forty trials give me no reason to call my hand "
-    "different; they would not have noticed a hand of half the Weber fraction either. I believe I went by how far the wall "
-    "gave. To find out I would draw the depth at which each press is stopped, or ask for the same force each time, so that one "
-    "cue tells nothing, and see whether my threshold grows. Before, I would say what the motor can do and how long it takes, "
-    "and that anybody may let go, rest or leave at any time without giving a reason."
+    "My interval reaches from 15 to 31 percent and contains 23 percent, so forty trials give me no reason to call my hand "
+    "different; forty trials would not have shown a hand of half the Weber fraction either. I think that I used how far the "
+    "wall gave way. To find out, I would stop each press at a depth drawn by chance, or ask for the same force each time, so "
+    "that one cue becomes useless, and see whether my threshold grows. Before the experiment I would tell the observers what "
+    "the motor can do and how long it takes, and that they may let go, rest or leave at any time without giving a reason."
 )

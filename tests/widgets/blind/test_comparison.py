@@ -91,6 +91,12 @@ def test_nothing_moves_but_what_is_shown_and_no_picture_tells_which_it_is(paddle
         pictures.append([item[0] for item in page.session.stage.drawn(0.01)])
         page.say("hide")
         assert not page.session.motion.running
+    drawn = []
+    for k in (200.0, 400.0):
+        page.session.set(k=k)
+        page.session.motion._last |= {"x": 0.006, "x_true": 0.006, "F": 0.006 * k}
+        drawn.append(repr(page.session.stage.drawn(0.01)))
+    assert drawn[0] == drawn[1]
     assert pictures[0] == pictures[1] and not any("motor" in str(item) for item in page.session.stage.drawn(0.01))
     told = page.session.description()
     assert told["parameters"] == [] and [trace["name"] for trace in told["traces"]] == ["x"]
