@@ -95,3 +95,51 @@ def test_a_hidden_tab_stops_a_motor_and_keeps_few_frames(page):
         }"""
     )
     assert waiting[-1] == pytest.approx(5999 / 60) and waiting[0] == pytest.approx(waiting[-1] - 5)
+
+
+@pytest.mark.wide
+def test_a_parameter_of_the_first_state_says_when_it_acts_and_more_than_three_fold(page):
+    labels = page.evaluate("() => view.sliders.map((slider) => slider.row.querySelector('label').textContent)")
+    assert labels == ["l [mm]", "h [mm]acts at the next start"]
+    folded = page.evaluate(
+        """(about) => {
+            const parameters = ["a", "b", "c", "d", "e"].map((name) => ({ ...about.parameters[0], name }))
+            const source = { about: { ...about, parameters }, open() {}, show() {}, tell() {}, press() {}, close() {} }
+            const other = new parts.View(source, document.body) // no kernel: any source of plain data
+            const more = other.root.querySelector("details.hl-more")
+            const found = [more.open, ...[more, other.root].map((each) => each.querySelectorAll(".hl-slider").length)]
+            more.querySelector("summary").focus()
+            const words = document.activeElement.textContent
+            other.close()
+            return [...found, words]
+        }""",
+        ABOUT,
+    )
+    assert folded == [False, 2, 5, "2 more parameters: d, e"]
+
+
+@pytest.mark.wide
+def test_what_moves_by_itself_moves_seldom_where_motion_is_reduced(page):
+    due = "() => [1, 1.1, 1.6].map((now) => view.due('tried', now, 25))"
+    assert page.evaluate(due) == [True, True, True]
+    page.evaluate("() => (view.tried = undefined)")
+    page.emulate_media(reduced_motion="reduce")
+    assert page.evaluate(due) == [True, False, True]
+
+
+@pytest.mark.wide
+def test_a_wall_that_is_reached_is_spoken_of_at_once_and_a_chatter_is_not(page):
+    spoken = page.evaluate(
+        """() => {
+            const said = []
+            const rows = (contact) => Float32Array.of(said.length, 0.0102, 1, 0, NaN, contact, 0.0102, 1)
+            for (const contact of [0, 1, 0, 1]) {
+                view.spoken.textContent = ""
+                view.samples.add(rows(contact))
+                view.consequence()
+                said.push(view.spoken.textContent)
+            }
+            return said
+        }"""
+    )
+    assert spoken == ["", "Contact reached at x = 10.2 mm.", "", ""]
