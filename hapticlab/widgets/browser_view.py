@@ -3,19 +3,21 @@
 To the browser: what changed of the picture's items, the status, the flags and the values as JSON; beside it one buffer,
 float64 dispatch [s], scene time [s], number of rows; then float32 the rows and every point of the picture. From the
 browser: four float64, the view's number, what it says (``KINDS``), and up to two values. With "alive" and "press" the
-second is the page's clock [s], so that a press that waited somewhere is known by its age.
+second is the page's clock [s], so that a press that waited somewhere is known by its age; "alive" goes on with the dispatch
+of the newest frame that came [s].
 """
 
 import math
 import struct
 import time
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import EngineMissingError
-from .session import PRESSES
+from .session import PRESSES, SILENCE
 
 KINDS = ("ready", "alive", "gone", "intend", "hold", "move", "press")
 BROWSER = Path(__file__).parent / "browser"
@@ -25,6 +27,8 @@ SCRIPTS = (
 )  # fmt: skip
 #: time on view in the traces, of the clock [s]
 SECONDS = 4.0
+#: a view whose newest frame is so old [s] gets so many a second
+BEHIND, SELDOM = 1.5, 4.0
 #: two clocks may drift apart so fast, and an age of a press be wrong by that of a heartbeat at most [s/s]
 DRIFT = 0.01
 
@@ -45,7 +49,11 @@ def front(session):
     speaker, listener = Speaker(widget.send), Listener(session)
 
     def heard(_, content, buffers):
-        if buffers and listener.heard(bytes(buffers[0])):
+        if not buffers:
+            return
+        message = bytes(buffers[0])
+        speaker.heard(message)
+        if listener.heard(message):
             speaker.forget()  # a new view has seen nothing yet
 
     widget.on_msg(heard)
@@ -62,19 +70,43 @@ def about(session):
 
 
 class Speaker:
-    """Tells every view of a widget what a frame shows; what is as before is not said again."""
+    """Tells every view of a widget what a frame shows; what is as before is not said again.
+
+    Frames are not acknowledged one by one: over a distance that would allow one for each way there and back. Instead each view
+    says now and then which one it has. Where that is old, a network holds frames back, and more of them would only wait.
+    """
 
     def __init__(self, send):
         self._send, self._said, self._status = send, {}, ""
+        self._taken, self._waiting, self._sent = {}, [], 0.0
+
+    def heard(self, message):
+        """Note which frame a view has, where its message says so."""
+        number, kind, *values = struct.unpack(f"<{len(message) // 8}d", message)
+        if KINDS[int(kind)] == "alive" and len(values) > 2 and values[2] > 0:
+            self._taken[number] = values[2], time.perf_counter()
+        elif KINDS[int(kind)] == "gone":
+            self._taken.pop(number, None)
+
+    def _is_behind(self, now):
+        """Tell whether a view that speaks has not had the frames of the last while."""
+        lately = [newest for newest, heard in list(self._taken.values()) if now - heard < SILENCE]
+        return bool(lately) and self._sent - min(lately) > BEHIND
 
     def forget(self):
         """Say everything with the next frame."""
         self._said = {}
 
     def say(self, frame):
-        """Send a frame."""
+        """Send a frame; a moving one seldom where a view is behind, and then with the rows of those before."""
+        now, self._status = time.perf_counter(), frame.status or self._status
+        if len(frame.rows):
+            self._waiting.append(frame.rows)
+            if now < self._sent + 1 / SELDOM and self._is_behind(now):
+                return
+            frame, self._waiting = replace(frame, rows=np.concatenate(self._waiting)), []
+        self._sent = now
         shape, points = take_apart(frame.picture)
-        self._status = frame.status or self._status
         flags = {name: on for name, on in frame.flags.items() if name not in ("values", "wanted")}
         said = {"shape": shape, "flags": flags, "status": self._status}
         before, self._said = self._said, said
@@ -83,7 +115,7 @@ class Speaker:
         news["values"] = frame.flags.get("values", {})
         if "wanted" in frame.flags:  # a view that just opened, or another one, begins there
             news["wanted"] = frame.flags["wanted"]
-        self._send(news, buffers=[pack(time.perf_counter(), frame, points)])
+        self._send(news, buffers=[pack(now, frame, points)])
 
 
 class Listener:
@@ -98,7 +130,7 @@ class Listener:
 
     def heard(self, message):
         """Take a message of a view; return whether that view is new."""
-        number, kind, value, more = struct.unpack("<4d", message)
+        number, kind, value, more, *_ = struct.unpack(f"<{len(message) // 8}d", message)
         view, name, session = f"{number:.0f}", KINDS[int(kind)], self._session
         if name == "ready":
             self._welcome(view, page=value)

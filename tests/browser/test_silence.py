@@ -46,7 +46,7 @@ def page(browser):
 
 
 def presses(page):
-    return [PRESSES[int(value)] for kind, value, _ in page.evaluate("said") if kind == 6]
+    return [PRESSES[int(value)] for kind, value, *_ in page.evaluate("said") if kind == 6]
 
 
 @pytest.mark.wide

@@ -73,6 +73,31 @@ def test_only_news_is_said_again_and_a_new_view_hears_everything():
     assert sent[-1]["status"] == "Running." and sent[-1]["shape"]
 
 
+@pytest.mark.parametrize(("late", "held"), [(0.2, False), (3.0, True)])
+def test_a_page_that_is_far_behind_gets_fewer_frames_and_no_fewer_rows(monkeypatch, late, held):
+    """Frames of 60 Hz over a line that delays them: a delay alone changes nothing, a jam thins them out."""
+    now, sent = [50.0], []
+    monkeypatch.setattr("hapticlab.widgets.browser_view.time.perf_counter", lambda: now[0])
+    speaker = Speaker(lambda content, buffers: sent.append((now[0], buffers[0])))
+    for k in range(300):
+        now[0] += 1 / 60
+        there = [when for when, _ in sent if when < now[0] - late]
+        if k % 24 == 0 and there:
+            speaker.heard(message("alive", 1.0, 5.0) + struct.pack("<d", there[-1]))
+        elif k % 24 == 0 and late > 1:
+            speaker.heard(message("alive", 1.0, 5.0) + struct.pack("<d", 50.0 + 1 / 60))
+        speaker.say(frame(rows=np.full((17, 8), k, np.float32)))
+    rows = sum(int(struct.unpack_from("<3d", data)[2]) for _, data in sent)
+    if not held:
+        assert len(sent) == 300 and rows == 300 * 17
+        return
+    assert len([when for when, _ in sent if 52 < when < 54]) == pytest.approx(8, abs=1)
+    assert rows >= 285 * 17  # the last quarter of a second waits
+    speaker.heard(message("gone"))
+    speaker.say(frame(rows=np.full((17, 8), 300, np.float32)))
+    assert sum(int(struct.unpack_from("<3d", data)[2]) for _, data in sent) == 301 * 17
+
+
 @pytest.mark.parametrize(
     ("said", "told"),
     [

@@ -12,6 +12,7 @@ class Kernel {
     this.about = model.get("about")
     this.number = Math.floor(Math.random() * 2 ** 48)
     this.seen = false
+    this.newest = 0 // dispatch of the newest frame [s], by the kernel's clock
   }
 
   // Begin: what comes goes to the view from now on, once it is seen.
@@ -51,9 +52,10 @@ class Kernel {
     window.removeEventListener("pageshow", this.back)
   }
 
-  say(what, value = 0, more = 0) {
+  say(what, value = 0, ...more) {
     try {
-      this.model.send({}, undefined, [new Float64Array([this.number, KIND[what], value, more]).buffer])
+      const [clock = 0, ...rest] = more
+      this.model.send({}, undefined, [new Float64Array([this.number, KIND[what], value, clock, ...rest]).buffer])
       this.cut = false
     } catch {
       this.cut = true // the kernel that this model spoke to is gone
@@ -62,7 +64,7 @@ class Kernel {
 
   beat() {
     if (!this.seen) return
-    this.say("alive", PAGE, Date.now() / 1000)
+    this.say("alive", PAGE, Date.now() / 1000, this.newest)
     const silence = performance.now() - this.heard
     if (silence > WORDLESS) this.view.fallSilent(this.silence(silence))
   }
@@ -78,9 +80,13 @@ class Kernel {
   }
 
   receive(content, buffers) {
-    const bytes = buffers[0]
-    if (bytes) this.heard = performance.now()
-    this.view.receive(content, bytes && bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength))
+    const [bytes] = buffers
+    const frame = bytes && bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength)
+    if (frame) {
+      this.heard = performance.now()
+      this.newest = new Float64Array(frame, 0, 1)[0] // so that a kernel knows how far behind a page is
+    }
+    this.view.receive(content, frame)
   }
 }
 
