@@ -295,3 +295,42 @@ def test_a_ball_that_the_handle_strikes_is_tied_to_nothing_and_lies_on_it():
         assert centre[1] - np.hypot(*(rim - centre)) - face[1] == pytest.approx(gap, abs=1e-12)
     assert any(tip[1] < tail[1] - 0.001 for (tail, tip), _ in found["arrow"])  # gravity points down
     assert {"$m$", "$g$"} <= letters(found)
+
+
+def test_a_double_pendulum_hangs_on_itself_and_each_bob_has_its_own_mass():
+    z, M, F = mass_on_a_coupler()
+    first, second = (hl.coordinate(f"theta_{k}", unit="rad") for k in (1, 2))
+    m_1, m_2, l_1, l_2, g = hl.parameters("m_1 m_2 l_1 l_2 g", units="kg kg m m m/s^2", values=(0.1, 0.02, 0.1, 0.06, 9.81))
+    X, Y = z + l_1 * sp.sin(first), -l_1 * sp.cos(first)
+    x, y = X + l_2 * sp.sin(second), Y - l_2 * sp.cos(second)
+    kinetic = (M * z.diff(hl.t) ** 2 + m_1 * (X.diff(hl.t) ** 2 + Y.diff(hl.t) ** 2)) / 2
+    kinetic += m_2 * (x.diff(hl.t) ** 2 + y.diff(hl.t) ** 2) / 2
+    scene = hl.Scene(force=F, eom=[hl.mechanics.lagrange(kinetic - g * (m_1 * Y + m_2 * y), forces={z: F})])
+    found = drawn(scene, theta_1=0.5, theta_2=-0.2)
+    upper, lower = (points for points, style in found["line"] if style["width"] == 2.5)
+    np.testing.assert_allclose(upper[1], lower[0], atol=1e-12)
+    np.testing.assert_allclose(upper[1] - upper[0], 0.1 * np.array([np.sin(0.5), -np.cos(0.5)]), atol=1e-12)
+    np.testing.assert_allclose(lower[1] - lower[0], 0.06 * np.array([np.sin(-0.2), -np.cos(-0.2)]), atol=1e-12)
+    assert {"$m_{1}$", "$m_{2}$", "$l_{1}$", "$l_{2}$", "$m$"} <= letters(found)
+
+
+@pytest.mark.parametrize("count", [1, 3, 9])
+def test_a_row_of_any_length_stands_apart_in_its_frame(count):
+    zs = [hl.coordinate(f"z_{k}", unit="m", initial=hl.x(n)) for k in range(count)]
+    m, K = hl.parameters("m K", units="kg N/m", values=(0.05, 200))
+    pulls = [K * (a - b) for a, b in zip([hl.x(hl.t), *zs], zs, strict=False)] + [0]
+    scene = hl.Scene(force=pulls[0], eom=[sp.Eq(m * z.diff(hl.t, 2), pulls[k] - pulls[k + 1]) for k, z in enumerate(zs)])
+    kept = DisplayList()
+    Schematic(scene)(kept, x=0.0)
+    ends = [(min(x for x, _ in points), max(x for x, _ in points)) for kind, points, style in kept.items if style.get("name")]
+    edges = [0.0, *np.ravel(sorted(ends)), kept.get_xlim()[1]]
+    assert len(ends) == count and np.all(np.diff(edges) > 0) and kept.get_xlim()[0] < -0.05
+
+
+def test_what_hangs_under_its_weight_stands_upright_above_the_handle():
+    z, m, F = mass_on_a_coupler()
+    g = hl.parameters("g", units="m/s^2", values=9.81)
+    found = drawn(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F - m * g)]), x=0.003, z=0.001)
+    (start, end), _ = found["spring"][0]
+    assert start[1] == pytest.approx(0.003, abs=1e-12) and end[1] == pytest.approx(body(found)[0][1], abs=1e-12)
+    assert end[1] > start[1] and "$g$" in letters(found)
