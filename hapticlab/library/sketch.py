@@ -104,6 +104,26 @@ class Sketch:
         beside, away = y - 3.9 * u, -1 if side >= 0 else 1
         self.add("force", (back, beside), (back + away * FULL * u, beside), zorder=6)
 
+    def track(self, height, x, name, points=401):
+        """Draw a potential as a track, with a roller on it that the handle leads.
+
+        Parameters
+        ----------
+        height : callable of positions [m] -> heights [m]
+        name : str
+            Names the track.
+        points : int
+            It is drawn through so many.
+        """
+        at, u = np.linspace(self.left, self.right, points), self.u
+        heights = np.round(height(at) - self.bottom, 7).tolist()
+        self.add("track", (self.left, self.bottom), (self.right, self.bottom), zorder=1, heights=heights)
+        radius, near = 1.2 * u, np.linspace(-1, 1, 41)
+        rest = float(np.max(height(x + radius * near) + radius * np.sqrt(1 - near**2)))
+        self.disc((x, rest), radius, zorder=5)
+        self.slider(x, rest + radius, max(self.top - 3.5 * u, rest + 6 * u), self.bottom + 1.6 * u)
+        self.text((self.left, float(np.max(height(at[: points // 7])))), name, right=4.5, up=2.6)
+
     def slider(self, x, foot, knob, low):
         """Draw a handle that stands on what it slides along, from its foot to its knob; its coordinate at a height ``low``."""
         u = self.u

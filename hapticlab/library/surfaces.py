@@ -52,7 +52,7 @@ def draw_detents(axes, *, x=0.013, A=0.6, p=0.01, **_):
     def track(at):
         return -0.5 * height * np.cos(2 * np.pi * np.asarray(at) / p)
 
-    _track(s, track, x, "$U(x)$")
+    s.track(track, x, "$U(x)$")
     low = -0.5 * height - 2 * s.u
     first = -2 * p
     for place in (first, first + p):
@@ -97,7 +97,7 @@ def draw_texture(axes, *, x=0.0135, p_1=0.003, p_2=0.00185, **_):
         bumps = p_1 * (1 - np.cos(2 * np.pi * at / p_1)) + p_2 * (1 - np.cos(2 * np.pi * at / p_2))
         return np.where(at >= 0, 0.3 * bumps, 0.0)
 
-    _track(s, track, x, "$U(x)$")
+    s.track(track, x, "$U(x)$")
     s.text((-0.03, 0), "smooth", up=-4)
     s.text((0.03, 0), "$p_1,\\ p_2$", up=-4)
 
@@ -140,7 +140,7 @@ def draw_virtual_fixture(axes, *, x=-0.006, x_g=0.0, w=0.02, x_o=0.035, k=150.0,
         wall = 0.5 * k_w * np.maximum(np.asarray(at) - x_o, 0) ** 2
         return min(0.6, 0.0055 / max(k * w**2 / 4, 1e-9)) * (well + wall)  # the well stays above its letters
 
-    _track(s, track, x, "$U(x)$")
+    s.track(track, x, "$U(x)$")
     for place, name in ((x_g, "$x_g$"), (x_o, "$x_o$")):
         s.line((place, -0.0072), (place, float(track(place))), width=0.8, color=SOFT)
         s.text((place, -0.0072), name, up=-1.8)
@@ -189,14 +189,3 @@ def draw_buckling_beam(axes, *, x=0.024, P=1.5, k=90.0, k_3=5e4, **_):
     s.arrow((0, half + 5.6 * u), (0, half + u))
     s.text((0, half + 4 * u), "$P\\,P_{cr}$", right=5)
     s.handle(x, below=11.2)
-
-
-def _track(s, track, x, name):
-    """Draw a potential as a track, and the handle with a roller on it."""
-    at, u = np.linspace(s.left, s.right, 401), s.u
-    s.add("track", (s.left, s.bottom), (s.right, s.bottom), zorder=1, heights=np.round(track(at) - s.bottom, 7).tolist())
-    radius, near = 1.2 * u, np.linspace(-1, 1, 41)
-    rest = float(np.max(track(x + radius * near) + radius * np.sqrt(1 - near**2)))
-    s.disc((x, rest), radius, zorder=5)
-    s.slider(x, rest + radius, max(s.top - 3.5 * u, rest + 6 * u), s.bottom + 1.6 * u)
-    s.text((s.left, float(np.max(track(at[:60])))), name, right=4.5, up=2.6)

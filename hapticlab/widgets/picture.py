@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ..analysis.pictures.force_field import ForceField
 from ..analysis.pictures.painting import paint
 from ..analysis.pictures.pictures import drawing_of, named_by
 from ..analysis.pictures.schematic import Schematic
@@ -167,7 +168,7 @@ def _drawing(scene, picture):
 
 
 def _defaults(drawing):
-    if isinstance(drawing, Schematic):
+    if isinstance(drawing, (ForceField, Schematic)):
         return drawing.start
     given = inspect.signature(drawing).parameters.values()
     return {p.name: p.default for p in given if isinstance(p.default, (int, float))}

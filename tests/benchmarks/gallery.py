@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "browser"))
 from lab import browsing
 
 #: of one picture, and of its place on the sheet [px]
-WIDE, HIGH, SHEET = 840, 220, 500
+WIDE, HIGH, SHEET = 840, 220, 480
 THEMES = {
     "light": {"dark": False, "ink": "#000", "paper": "rgb(255,255,255)", "quiet": "#595959", "grid": "#d9d9d9"},
     "dark": {"dark": True, "ink": "#eee", "paper": "rgb(17,17,17)", "quiet": "#a6a6a6", "grid": "#3a3a3a"},
@@ -50,6 +50,7 @@ def own_scenes():
     K, b_c, k_b = hl.parameters("K b_c k_b", units="N/m N*s/m N/m", values=(200, 0.1, 300))
     k_left, k_right = hl.parameters("k_left k_right", units="N/m N/m", values=(100, 200))
     x_o = hl.parameters("x_o", units="m", values=0.01)
+    A, p, k_3 = hl.parameters("A p k_3", units="N m N/m^3", values=(0.6, 0.012, 5e4))
     F_c = K * (x(t) - z) + b_c * (v(t) - z.diff(t))
     bob = m * ((z + l * sp.sin(theta)).diff(t) ** 2 + (l * sp.cos(theta)).diff(t) ** 2) / 2
     swing = hl.mechanics.lagrange(M * z.diff(t) ** 2 / 2 + bob + m * g * l * sp.cos(theta), forces={z: F_c})
@@ -63,6 +64,8 @@ def own_scenes():
         "a spring and a damper": hl.Scene(force=k_left * x(n) + b_c * v(n)),
         "a mass of one's own": hl.Scene(force=F_c, eom=[sp.Eq(m * z.diff(t, 2), F_c)], watch=[z]),
         "a pendulum of one's own": hl.Scene(force=F_c, eom=[swing], watch=[z, theta]),
+        "detents of one's own": hl.Scene(force=A * sp.sin(2 * sp.pi * x(n) / p)),
+        "a cubic spring": hl.Scene(force=k_3 * x(n) ** 3),
         "a ball on the handle": hl.Scene(force=touch.felt, eom=[flight], watch=[y]),
     }
 
@@ -138,7 +141,7 @@ def main():
                     print(f"{name:26s} {told['took']:6.3f} ms  {told['bytes']:6d} bytes of points  {told['shape']:6d} of style"
                           + (f"  {hidden} labels found no place" if hidden else ""))  # fmt: skip
             given.folder.mkdir(parents=True, exist_ok=True)
-            sheet.quantize(96).save(given.folder / f"{theme}.png", optimize=True)
+            sheet.quantize(64).save(given.folder / f"{theme}.png", optimize=True)
 
 
 if __name__ == "__main__":

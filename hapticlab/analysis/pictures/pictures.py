@@ -15,6 +15,7 @@ from ...errors import AnalysisError
 from ...library.display_list import DisplayList
 from ...library.entries import CATALOGUE
 from ...scene.scene import Scene
+from .force_field import ForceField, is_field
 from .painting import paint
 from .schematic import Schematic
 
@@ -96,7 +97,7 @@ def drawing_of(scene):
             made = entry.scene()
             if (made.name, made.coordinates) == (scene.name, scene.coordinates):
                 return entry.draw or Schematic(scene)
-    return Schematic(scene)
+    return ForceField(scene) if is_field(scene) else Schematic(scene)
 
 
 def named_by(drawing):

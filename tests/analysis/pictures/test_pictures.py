@@ -6,6 +6,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n
+from hapticlab.analysis.pictures.force_field import ForceField
 from hapticlab.analysis.pictures.pictures import drawing_of
 from hapticlab.analysis.pictures.schematic import Schematic
 from hapticlab.analysis.pictures.shape_outlines import Outline
@@ -236,6 +237,19 @@ def test_a_scene_of_the_library_is_drawn_as_the_library_does_also_when_bound_ane
         drawing = drawing_of(scene(**dict(scene.values)))
         assert drawing is entry.draw if entry.draw else isinstance(drawing, Schematic)
     assert isinstance(drawing_of(hl.Scene(force=k * hl.x(n), name="detents of my own")), Schematic)
+
+
+def test_a_force_field_of_ones_own_is_drawn_as_its_potential():
+    A, p = hl.parameters("A p", units="N m", values=(0.6, 0.012))
+    mine = hl.Scene(force=A * sp.sin(2 * sp.pi * hl.x(n) / p))
+    for values in ({}, {"A": 1.2}):
+        ((left, _), (right, _)), style = drawn(mine, x=0.003, **values)["track"][0]
+        U = np.array(style["heights"])
+        at = np.linspace(left, right, len(U))
+        expected = 0.5 * 0.011 * values.get("A", 0.6) / 0.6 * (1 - np.cos(2 * np.pi * at / 0.012))  # -A p/(2 pi) cos, by hand
+        np.testing.assert_allclose(U - U.min(), expected - expected.min(), atol=2e-4)
+    walls = [hl.wall(law)() for law in ("zoh", "ellis")] + [hl.laws.virtual_damper()(), hl.Scene(force=k * hl.x(n))]
+    assert not any(isinstance(drawing_of(wall), ForceField) for wall in walls)
 
 
 @pytest.mark.parametrize(
