@@ -107,7 +107,7 @@ def copy_labs(target: File, only: Sequence[str] = ()) -> dict[str, str]:
         raise CourseError(f"{target} is a file; name a folder for the labs")
     if source.resolve() in (target.resolve(), *target.resolve().parents):
         inside = "" if target.resolve() == source.resolve() else "inside the folder "
-        raise CourseError(f"{target} is {inside}the folder that the labs come from; give a different folder for your own copy")
+        raise CourseError(f"{target} is {inside}where the labs come from; give a different folder for your own copy")
     left_out = {lab.name for lab in find_labs(source)} - _chosen(target, only)
     paths = [path for path in _files(source) if path.parts[0] not in left_out]
     try:

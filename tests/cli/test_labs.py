@@ -119,7 +119,7 @@ def test_a_link_leads_no_writing_elsewhere(place):
     [
         (["labs", "file", "--no-open"], "file is a file; name a folder for the labs"),
         (["labs", "../labs", "--no-open"], "is where the labs come from"),
-        (["labs", "new", "--no-open", "--instructor", "nowhere"], "nowhere contains no NN_name/solution.py; name the folder"),
+        (["labs", "new", "--no-open", "--instructor", "nowhere"], "nowhere contains no NN_name/solution.py; give the folder"),
         (["labs", "../labs/sub", "--no-open"], "is inside the folder where the labs come from"),
     ],
 )
@@ -233,7 +233,7 @@ def test_a_place_that_cannot_be_written_to_is_told_with_a_cure(capsys):
     Path("mine/08_springs").touch()
     assert main(["labs", "mine", "--no-open"]) == 1
     err = capsys.readouterr().err
-    assert "cannot write mine/08_springs: File exists; what came before it is copied. Name a folder of your own" in err
+    assert "cannot write mine/08_springs: File exists; the files before it are copied. Give a folder of your own" in err
 
 
 def test_an_instructor_gets_solved_notebooks_in_a_folder_of_their_own_and_their_marks(place, capsys):

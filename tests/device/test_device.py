@@ -59,7 +59,7 @@ def test_a_profile_and_a_board_have_their_numbers():
 
 
 def test_a_law_of_another_period_is_refused():
-    with pytest.raises(AnalysisError, match="is a law of T = 0.001 s; the paddle samples every 0.002 s"):
+    with pytest.raises(AnalysisError, match="is a law with T = 0.001 s, but the paddle samples every 0.002 s"):
         hl.passivity.margin(hl.Device(b=0.1, T=2e-3), LAW)
 
 

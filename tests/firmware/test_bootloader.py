@@ -172,7 +172,7 @@ def test_a_cut_leaves_a_board_that_stands_still(connect, tmp_path, page, bytes_o
     flash("test://", old)
     assert heard(board) == {ord("o")}
     cut_at[0] = page
-    state = "is stopped with its motor off" if page < 9 else "motor's supply off"  # the ninth is the first page
+    state = "is stopped with its motor off" if page < 9 else "switch off the supply of its motor"  # the ninth is the first page
     with pytest.raises(PortError, match=f"disconnected during use.*old firmware is erased.*{state}. Flash it again") as caught:
         flash("test://", new)
     assert caught.value.cause == "left"

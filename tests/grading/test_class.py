@@ -96,6 +96,6 @@ def test_a_worker_hides_what_this_computer_hides(course, tmp_path):
 
 
 def test_what_walls_leave_open_is_told(capsys):
-    _tell_walls(Walls("none", {"namespaces": "unshare: Operation not permitted"}, "nothing hides files"))
+    _tell_walls(Walls("none", {"namespaces": "unshare: Operation not permitted"}, "files are not hidden"))
     told = capsys.readouterr().err
-    assert "warning: nothing hides files" in told and "no namespaces here: unshare: Operation not permitted" in told
+    assert "warning: files are not hidden" in told and "no namespaces here: unshare: Operation not permitted" in told

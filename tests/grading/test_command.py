@@ -56,7 +56,7 @@ def test_a_solved_lab_earns_all_by_public_cases_with_a_warning(here, tmp_path, c
         assert main(["grade", str(path), "--workers", "1", "--sandbox", "none"]) == 0
     told = capsys.readouterr()
     assert told.out.startswith("ada: 10 of 10 points, lab 02")
-    assert "learnt by heart" in told.err and "nothing hides files" in told.err
+    assert "learnt by heart" in told.err and "files are not hidden" in told.err
 
 
 def test_the_lab_is_named_by_the_files_or_by_what_their_cells_check(tmp_path):

@@ -374,10 +374,10 @@ def test_an_unknown_format_is_refused():
 SENTENCES = {
     "The sign is wrong.": True,
     "It is 1000 times too large: is it in millimetres?": True,
-    "It is 2 times what is expected, at every point.": True,
-    "It is 231.4 times what is expected, at every point.": False,
-    "It is 2314 times what is expected, at every point.": False,
-    "It is 1.2e-05 times what is expected, at every point.": False,
+    "It is 2 times the expected value, at every point.": True,
+    "It is 231.4 times the expected value, at every point.": False,
+    "It is 2314 times the expected value, at every point.": False,
+    "It is 1.2e-05 times the expected value, at every point.": False,
     "It lacks a factor k, so its unit is wrong. Beside that it is 0.731 times too large.": False,
     "It is 1000 times too large. In this case k = 654, so a factor k may also be missing.": False,
 }

@@ -112,7 +112,7 @@ def test_a_sensor_without_dither_is_told_and_its_rounding_is_no_misfit():
     for seed in range(2):
         found = hl.identify.step_response(run(STEPS, replace(PADDLE, noise=5e-7, seed=seed)), counts_per_metre=COUNTS)
         assert found.explained and not found.dithered
-        assert "NOT DITHERED" in str(found) and "counting the fitted motion anew" in str(found)
+        assert "NOT DITHERED" in str(found) and "quantising the fitted motion again" in str(found)
 
 
 def test_refusals_say_what_to_do(steps):

@@ -295,7 +295,7 @@ def test_a_script_without_a_guard_is_told(tmp_path):
     path = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, env=path)
     assert done.returncode == 1
-    assert done.stderr.rstrip().splitlines()[-1].startswith("hapticlab.errors.AnalysisError: the worker processes died 3")
+    assert done.stderr.rstrip().splitlines()[-1].startswith("hapticlab.errors.AnalysisError: the worker processes ended 3")
 
 
 @pytest.mark.slow  # starting a cluster takes seconds; processes of our own are killed above

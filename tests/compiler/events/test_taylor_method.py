@@ -244,7 +244,7 @@ def test_a_series_that_diverges_within_a_step_is_a_fault(law):
     # steep within a millimetre of zero, which it passes at 3.7 m/s: a step of 1 ms is past the poles of the series
     y, program = free(lambda y, w: -20 * law(y), start=0.35, ticks=220)
     assert np.isfinite(y[:187]).all() and not np.isfinite(y[190:]).any()
-    assert any("diverges; take more substeps" in note for note in program.notes)
+    assert any("diverges. Use more substeps" in note for note in program.notes)
     fine, _ = free(lambda y, w: -20 * law(y), start=0.35, ticks=220, substeps=16)
     f = sp.lambdify(sp.Symbol("y"), law(sp.Symbol("y")), "math")
     found = solve_ivp(
