@@ -137,7 +137,7 @@ def test_past_the_limit_the_term_that_grew_is_named(monkeypatch):
     monkeypatch.setattr("hapticlab.compiler.algebra.expressions.MOST_INSTRUCTIONS", 300)
     rough = sp.Add(*(sp.sin(j * phi) ** j for j in range(1, 80)))
     mech = hl.mechanics.lagrange(KINETIC - m * g * l * rough)
-    with pytest.raises(ProgramLimitError, match=r"more than 300 instructions: \d+ of them are for sin\(phi\(t\)\) \+ .*fewer terms"):
+    with pytest.raises(ProgramLimitError, match=r"more than 300 instructions: \d+ of them are for sin\(phi.*fewer terms"):
         compiled(mech)
     many = [hl.coordinate(f"q{j}", unit="m") for j in range(20)]
     pulls = [k * sp.Add(*(many[j] - many[i] for i in range(20))) for j in range(20)]
