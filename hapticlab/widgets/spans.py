@@ -79,15 +79,15 @@ def shown_unit(unit):
 
     Examples
     --------
-    >>> shown_unit("m"), shown_unit("m*s^-1"), shown_unit("N*s/m"), shown_unit("1")
-    ((1000.0, 'mm'), (1.0, 'm/s'), (1.0, 'N s/m'), (1.0, ''))
+    >>> shown_unit("m"), shown_unit("m*s^-2"), shown_unit("N*s/m"), shown_unit("1")
+    ((1000.0, 'mm'), (1.0, 'm/s²'), (1.0, 'N s/m'), (1.0, ''))
     """
     if unit in SHOWN:
         return SHOWN[unit]
     above = [part for part in unit.split("*") if "^-" not in part]
     below = [part.replace("^-1", "").replace("^-", "^") for part in unit.split("*") if "^-" in part]
     words = " ".join(above) + "".join(f"/{part}" for part in below) if above else unit.replace("*", " ")
-    return 1.0, "" if words == "1" else words
+    return 1.0, "" if words == "1" else words.replace("^2", "²").replace("^3", "³")
 
 
 def _only_at_start(program):

@@ -62,7 +62,7 @@ class View {
       (parameter, k) => new Slider(parameter, `${this.id}-${k}`, (value) => this.tell("move", k, value)),
     )
     const said = make("div", { class: "hl-said" }, [this.status, this.hint])
-    this.root.append(overview, this.controls.row, this.stage, this.numbers.row, said, this.spoken, graphs, ...this.parameters(), this.help())
+    this.root.append(overview, this.controls.row, this.stage, this.numbers.row, said, this.spoken, graphs, ...this.parameters())
     el.append(this.root)
     // JupyterLab takes keys for its own, d d to delete a cell, unless the very element that has the focus says no.
     for (const each of this.root.querySelectorAll("[tabindex], input, button, summary")) each.dataset.lmSuppressShortcuts = "true"
@@ -76,15 +76,16 @@ class View {
     return about.kind === "simulated" ? Hand.role(about) : { role: "img", "aria-label": `${about.title}: moving picture` }
   }
 
-  // Up to three sliders, and the others folded.
+  // Up to three sliders; the others and the help folded, in one row.
   parameters() {
     const rows = this.sliders.map((slider) => slider.row)
     const group = (words, some) => make("div", { class: "hl-sliders", role: "group", "aria-label": words }, some)
     const first = rows.length ? [group("parameters", rows.slice(0, FOLDED))] : []
-    if (rows.length <= FOLDED) return first
     const more = rows.slice(FOLDED)
     const names = this.sliders.slice(FOLDED).map((slider) => slider.name).join(", ")
-    return [...first, make("details", { class: "hl-more" }, [make("summary", {}, [`${more.length} more parameters: ${names}`]), group("more parameters", more)])]
+    const summary = make("summary", {}, [`${more.length} more parameter${more.length > 1 ? "s" : ""}: ${names}`])
+    const folded = more.length ? [make("details", { class: "hl-more" }, [summary, group("more parameters", more)])] : []
+    return [...first, make("div", { class: "hl-folds" }, [...folded, this.help()])]
   }
 
   help() {
