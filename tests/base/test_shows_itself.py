@@ -205,6 +205,7 @@ def test_a_figure_that_cannot_be_drawn_is_a_sentence():
     assert "No figure: " in html and "<img" not in html
 
 
+@pytest.mark.wide
 def test_names_cannot_run_as_code():
     name = "<script>alert(1)</script><img src=x onerror=alert(2)>"
     scene = hl.Scene(force=hl.v(hl.n) * hl.parameters("b", units="N*s/m"), name=name)
