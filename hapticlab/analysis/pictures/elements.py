@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import sympy as sp
+from sympy.polys.polyerrors import PolynomialError
 
 from ...errors import HapticlabError
 from ...scene.notation.symbols import v
@@ -50,7 +51,7 @@ class Elements:
 
 
 def elements(scene):
-    """Return the :class:`Elements` of a scene; empty where its equations cannot be solved for accelerations.
+    """Return the :class:`Elements` of a scene; empty where its equations cannot be read so.
 
     Examples
     --------
@@ -59,11 +60,14 @@ def elements(scene):
     >>> found.masses, [(tie.first, tie.second, tie.spring, tie.damper) for tie in found.ties]
     ({'z': m}, [('x', 'z', K, b_c), ('z', '', k, b)])
     """
-    found = Elements()
     try:
-        form = scene.explicit()
-    except HapticlabError:
-        return found
+        return _read(scene, scene.explicit())
+    except (HapticlabError, PolynomialError, NotImplementedError, ArithmeticError):
+        return Elements()  # equations beyond this reading: bodies are drawn without what ties them
+
+
+def _read(scene, form):
+    found = Elements()
     units = {type(q).__name__: type(q).unit for q in form.coordinates}
     lengths = [name for name, unit in units.items() if unit == "m"]
     reader = _Reader(scene, [*units, "x"])
@@ -165,8 +169,8 @@ def apart(expr):
 
 
 def value_of(expr):
-    """Return (function of a dict of numbers -> float or None, names) of a coefficient."""
+    """Return (function of a dict of numbers -> float, None where one is not known; names) of a coefficient."""
     if expr is None:
         return (lambda known: None), frozenset()
     value, names = formula(expr)
-    return (lambda known: float(value(known)[0])), names
+    return (lambda known: float(value(known)[0]) if names <= set(known) else None), names

@@ -36,12 +36,20 @@ class ForceField:
 
         s.track(track, x, "$U(x)$", POINTS)
 
+    def _force_at(self, values):
+        """The force [N]; none where the formula has no value."""
+        try:
+            F = float(self._force(values)[0])
+        except (ArithmeticError, TypeError, ValueError):
+            return 0.0
+        return F if np.isfinite(F) else 0.0
+
     def _potential(self, values):
         """The integral of the force over x, from its smallest value [J]."""
         key = tuple(values[name] for name in sorted(self.names))
         if key not in self._known:
             at = np.linspace(*BOX[:2], POINTS)
-            F = np.array([self._force({**values, "x": place})[0] for place in at.tolist()])
+            F = np.array([self._force_at({**values, "x": place}) for place in at.tolist()])
             U = np.concatenate([[0.0], np.cumsum((F[1:] + F[:-1]) / 2 * np.diff(at))])
             self._known = {key: U - U.min()}
         return self._known[key]
@@ -61,7 +69,7 @@ def is_field(scene):
     if any(sample.args[0] != n for sample in scene.force.atoms(x)):
         return False
     force = plain_symbols(scene.force)
-    if {s.name for s in force.free_symbols} - set(scene.parameters) - {"x"}:
+    if {s.name for s in force.free_symbols} - set(scene.values) - {"x"}:
         return False
     parts = [force.xreplace(dict.fromkeys(force.atoms(sp.Piecewise), sp.S.Zero))]
     parts += [value for cases in force.atoms(sp.Piecewise) for value, _ in cases.args]

@@ -200,6 +200,14 @@ def test_a_mass_of_ones_own_has_spring_damper_and_letters_between_its_bodies(div
     assert {"$m$", "$K$", "$b_{c}$", "$z$", "handle"} <= letters(found)
 
 
+def test_a_scene_whose_parameters_have_no_values_yet_is_drawn_too():
+    z, m, K, A = hl.coordinate("z", unit="m"), *hl.parameters("m K A", units="kg N/m N")
+    F = K * (hl.x(hl.t) - z)
+    found = drawn(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)]))
+    assert {"$m$", "$K$"} <= letters(found) and found["spring"]
+    assert drawn(hl.Scene(force=A * sp.sin(hl.x(n) / x_o)))["handle"]
+
+
 def test_a_scene_of_ones_own_is_drawn_as_that_of_the_library():
     z = hl.coordinate("z", unit="m", initial=hl.x(n))
     m, K, b_c, b, k = hl.parameters("m K b_c b k", units="kg N/m N*s/m N*s/m N/m", values=(0.1, 200, 0.1, 0.1, 100))
@@ -248,6 +256,10 @@ def test_a_force_field_of_ones_own_is_drawn_as_its_potential():
         at = np.linspace(left, right, len(U))
         expected = 0.5 * 0.011 * values.get("A", 0.6) / 0.6 * (1 - np.cos(2 * np.pi * at / 0.012))  # -A p/(2 pi) cos, by hand
         np.testing.assert_allclose(U - U.min(), expected - expected.min(), atol=2e-4)
+    torn = hl.Scene(force=hl.parameters("c", units="N/m^0.5", values=1) * sp.sqrt(x_o - hl.x(n)))
+    ((left, _), (right, _)), style = drawn(torn)["track"][0]
+    U = np.array(style["heights"])
+    assert np.ptp(U[np.linspace(left, right, len(U)) > 0.0105]) < 1e-7  # no force is known there
     walls = [hl.wall(law)() for law in ("zoh", "ellis")] + [hl.laws.virtual_damper()(), hl.Scene(force=k * hl.x(n))]
     assert not any(isinstance(drawing_of(wall), ForceField) for wall in walls)
 
