@@ -134,10 +134,10 @@ def test_a_wall_that_is_reached_is_spoken_of_at_once_and_a_chatter_is_not(page):
             const said = []
             const rows = (contact) => Float32Array.of(said.length, 0.0102, 1, 0, NaN, contact, 0.0102, 1)
             for (const contact of [0, 1, 0, 1]) {
-                view.spoken.textContent = ""
+                view.spoken.element.textContent = ""
                 view.samples.add(rows(contact))
-                view.consequence()
-                said.push(view.spoken.textContent)
+                view.spoken.follow(view.samples)
+                said.push(view.spoken.element.textContent)
             }
             return said
         }"""

@@ -6,8 +6,6 @@ const TRACED = 25 // [ms] between two pictures of the traces: they scroll, and w
 const LOOPED = 100 // [ms] between two pictures of the loop
 const CALM = 500 // [ms] between two of either where motion is reduced, and of a zoom that stands still
 const READOUT = 250 // [ms] between two readouts in text
-const SPOKEN = 2000 // [ms] between two sentences for who listens
-const ASKED = 8000 // [ms] that details which were asked for are not talked over
 const HIDDEN = 3000 // [ms] until a board's motor goes off whose view nobody sees
 const LONG = 90 // letters
 const FOLDED = 3 // sliders that are not folded away
@@ -52,7 +50,7 @@ class View {
     this.numbers = new Numbers(about.traces, (open) => this.traces.show(open))
     this.status = make("p", { class: "hl-status" }, [WAITING])
     this.hint = make("p", { class: "hl-hint" })
-    this.spoken = make("p", { class: "hl-unseen hl-spoken", role: "status", "aria-live": "polite" })
+    this.spoken = new Spoken()
     this.graph = make("canvas", { class: "hl-graph", role: "img", "aria-label": "traces over time; the numbers above give the present values" })
     this.ring = make("canvas", { class: "hl-ring", role: "img", "aria-label": "loop of force over position; the text below says its energy" })
     this.energy = make("p", { class: "hl-energy" })
@@ -62,7 +60,7 @@ class View {
       (parameter, k) => new Slider(parameter, `${this.id}-${k}`, (value) => this.tell("move", k, value)),
     )
     const said = make("div", { class: "hl-said" }, [this.status, this.hint])
-    this.root.append(overview, this.controls.row, this.stage, this.numbers.row, said, this.spoken, graphs, ...this.parameters())
+    this.root.append(overview, this.controls.row, this.stage, this.numbers.row, said, this.spoken.element, graphs, ...this.parameters())
     el.append(this.root)
     // JupyterLab takes keys for its own, d d to delete a cell, unless the very element that has the focus says no.
     for (const each of this.root.querySelectorAll("[tabindex], input, button, summary")) each.dataset.lmSuppressShortcuts = "true"
@@ -126,8 +124,7 @@ class View {
     const plain = !event.ctrlKey && !event.altKey && !event.metaKey && event.target.type !== "text"
     if (!plain || event.key.toLowerCase() !== "d") return
     event.preventDefault()
-    this.spoken.textContent = details(this)
-    this.spokenAt = performance.now() + ASKED
+    this.spoken.answer(details(this))
   }
 
   // --- who sees it
@@ -176,7 +173,7 @@ class View {
     this.hint.textContent = ""
     this.say(words)
     this.showFlags(this.flags)
-    this.speak()
+    this.spoken.status(this.status.textContent)
   }
 
   // Take news, {shape, flags, values, status, wanted}, and the bytes of a frame.
@@ -188,7 +185,7 @@ class View {
     if (news.status) this.words = news.status
     if (!bytes) return
     this.say(this.words)
-    this.speak()
+    this.spoken.status(this.status.textContent)
     if (this.silent) {
       this.silent = false
       this.showFlags(this.flags)
@@ -202,27 +199,6 @@ class View {
     if (this.status.textContent === words) return
     this.status.textContent = this.status.title = words
     this.root.classList.toggle("hl-long", words.length > LONG)
-  }
-
-  // Say the status to who listens, when another kind of sentence is there, and not too often.
-  speak() {
-    const words = this.status.textContent
-    const kind = words.replace(/-?[\d.]+(e[+-]?\d+)?/g, "#")
-    if (kind === this.saidKind || performance.now() < this.spokenAt + SPOKEN) return
-    this.saidKind = kind
-    this.spokenAt = performance.now()
-    this.spoken.textContent = words
-  }
-
-  // Say at once that something was reached, unless it comes and goes.
-  consequence() {
-    const contact = this.samples.last("contact")
-    if (contact === 1 && this.contact === 0 && performance.now() > (this.leftAt ?? -Infinity) + SPOKEN / 4) {
-      this.spoken.textContent = `Contact reached at x = ${(1000 * this.samples.last("x")).toFixed(1)} mm.`
-      this.spokenAt = performance.now()
-    }
-    if (contact === 0 && this.contact === 1) this.leftAt = performance.now()
-    this.contact = contact
   }
 
   showFlags(flags) {
@@ -285,7 +261,7 @@ class View {
     this.traces.add(count)
     this.sound.play(count, this.traces.speed)
     if (this.hand && count) this.hand.x = this.samples.last("x")
-    if (count) this.consequence()
+    if (count) this.spoken.follow(this.samples)
   }
 
   // Whether what was drawn at a moment [s] is old enough to be drawn again; seldom where motion is reduced.
