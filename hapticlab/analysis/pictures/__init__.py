@@ -1,6 +1,6 @@
 """Drawings of a scene: its schematic, its shapes and walls, its formulas in plain text.
 
 In: a scene. Out: a figure, or sentences for who cannot see it.
-Read ``pictures`` first, then ``schematic``, what it reads off the equations (``elements``, ``wall_boundaries``,
-``shape_outlines``, ``plain_formulas``), ``layout``, ``force_field`` and ``painting``.
+Read ``pictures`` first, then ``schematic`` with ``layout``, what both read off the equations (``elements``, ``row_of_bodies``,
+``wall_boundaries``, ``shape_outlines``, ``plain_formulas``), ``force_field``, and ``painting``.
 """

@@ -9,18 +9,13 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from ...errors import HapticlabError
 from ...library.sketch import FACE, SOFT
-from ...scene.contact.contact import Contact, friction
-from ...scene.notation.symbols import n, t, v, x
-from .elements import Elements, Tie, apart, elements, value_of
+from .elements import Elements, Tie, elements, value_of
 from .layout import DIAL, ROD, lay_out
-from .plain_formulas import formula, plain_symbols
+from .row_of_bodies import LOOKED_AT, chain, held_by, meetings, rubbed, stands, start_of
 from .shape_outlines import Outline
 from .wall_boundaries import boundaries
 
-#: coordinates up to which couplings are looked for; more stand in a row, each coupled to the one before
-LOOKED_AT = 4
 #: a body that others follow and the ground holds has the ground's spring so far below the middle, theirs above it [u]
 LOW, RAISED = -6.2, 5.0
 
@@ -44,17 +39,17 @@ class Schematic:
 
     def __init__(self, scene, shapes=()):
         self.outlines = [Outline(shape) for shape in shapes]
-        self.walls, self.start, self.values = boundaries(scene), _start(scene), dict(scene.values)
+        self.walls, self.start, self.values = boundaries(scene), start_of(scene), dict(scene.values)
         placed = set().union(*(outline.names for outline in self.outlines)) if shapes else set()
         free = [q for q in scene.coordinates if type(q).__name__ not in placed]
-        self.bodies = [type(q).__name__ for q in _chain(scene, [q for q in free if type(q).unit == "m"])]
+        self.bodies = [type(q).__name__ for q in chain(scene, [q for q in free if type(q).unit == "m"])]
         self.parts = elements(scene) if len(scene.coordinates) <= LOOKED_AT else _row(self.bodies)
         angles = [q for q in free if type(q).unit == "rad"]
         self.rods = {type(q).__name__: value_of(self.parts.rods.get(type(q).__name__)) for q in angles}
-        self.stands = {type(q).__name__: _stands(scene, q) for q in angles}
+        self.stands = {type(q).__name__: stands(scene, q) for q in angles}
         self.carried = {name: self.parts.carriers.get(name, "") for name in self.rods}
         self.upright = any(name in self.parts.weights for name in self.bodies)
-        self.held_by, self.meets, self.rough = _held_by(scene), _meets(scene, self.bodies), _rough(scene)
+        self.held_by, self.meets, self.rough = held_by(scene), meetings(scene, self.bodies), rubbed(scene)
         movers = {"x", "", *self.bodies}
         self.ties = [(tie, *value_of(tie.spring)) for tie in self.parts.ties if {tie.first, tie.second} <= movers]
         self.layout = self._lay_out()
@@ -241,18 +236,6 @@ def _row(names):
     return Elements(ties=[Tie(first, second, sp.S.Zero) for first, second in zip(["x", *names], names, strict=False)])
 
 
-def _start(scene):
-    """Return where the handle and the coordinates are at the first sample; 0 where that is not known."""
-    start = {"x": 0.0} | {type(q).__name__: 0.0 for q in scene.coordinates}
-    for q in scene.coordinates:
-        try:
-            value, _ = formula(type(q).initial)
-            start[type(q).__name__] = float(value({**start, **scene.values})[0])
-        except (KeyError, TypeError, ValueError, ZeroDivisionError, NotImplementedError):
-            continue
-    return start
-
-
 @cache
 def _symbol(part):
     """Return a coefficient as it is set; nothing where it has none, or a long one."""
@@ -263,82 +246,3 @@ def _symbol(part):
 def _letters(name):
     """Return a name as it is set: theta_1 with the Greek letter."""
     return f"${sp.latex(sp.Symbol(name))}$" if name else ""
-
-
-def _chain(scene, lengths):
-    """Return the coordinates in the order in which they follow the handle."""
-    order, waiting = [], list(lengths)
-    while waiting:
-        last = order[-1] if order else x(t)
-        order.append(next((q for q in waiting if _coupled(scene, last, q)), waiting[0]))
-        waiting.remove(order[-1])
-    return order
-
-
-def _meets(scene, names):
-    """Return name -> (neighbour to its left, gap [m] where both are at zero), of those that a contact keeps apart."""
-    contacts, found, row = (getattr(entry, "contacts", ()) for entry in scene.eom), {}, ["x", *names]
-    gaps = [plain_symbols(c.gap) for listed in contacts for c in listed if isinstance(c, Contact)]
-    for before, name in zip(row, names, strict=False):
-        here, there = sp.Symbol(before, real=True), sp.Symbol(name, real=True)
-        for gap in gaps:
-            if (gap.diff(there), gap.diff(here)) == (1, -1):
-                rest = gap.xreplace({here: sp.S.Zero, there: sp.S.Zero}).subs(dict(scene.values))
-                found[name] = (before, float(rest) if rest.is_number else 0.0)
-    return found
-
-
-def _coupled(scene, first, second):
-    """Tell whether two movers pull on each other when apart, not in a contact or a case alone."""
-    if len(scene.coordinates) > LOOKED_AT:
-        return True
-    if first == x(t):
-        return apart(scene.force).has(second) or any(expr.has(x, v) for expr in _acting(scene, second))
-    return any(expr.has(first) for expr in _acting(scene, second)) or any(expr.has(second) for expr in _acting(scene, first))
-
-
-def _acting(scene, q):
-    """The force on a coordinate, without terms that act in cases alone."""
-    try:
-        form = scene.explicit()
-    except HapticlabError:
-        return ()
-    if q not in form.coordinates:
-        return ()
-    return (apart(form.f[form.coordinates.index(q)]),)
-
-
-def _held_by(scene):
-    """The coefficients of the elements between the handle and the ground, of "spring" and "damper".
-
-    A force that a shift of everything changes is a spring; one that a speed of the handle changes is a damper.
-    """
-    force, past, speed = apart(scene.force), sp.Symbol("past"), sp.Symbol("speed")
-    lengths = [q for q in scene.coordinates if type(q).unit == "m"]
-    samples = {sample: sp.Symbol("x") - (n - sample.args[0]) * past for sample in force.atoms(x) if sample.args[0] != t}
-    force = force.xreplace({**samples, x(t): sp.Symbol("x"), **dict.fromkeys(force.atoms(v), speed)})
-    shifted = force.xreplace(dict.fromkeys([*lengths, sp.Symbol("x")], sp.Symbol("shift")))
-    ties, found = [("spring", sp.Symbol("shift"), shifted), ("damper", past, force), ("damper", speed, force)], {}
-    for tie, by, acts in ties:
-        slope = sp.expand(acts.diff(by))
-        if not slope.is_zero and not (tie == "damper" and lengths):
-            period = next((s for s in slope.free_symbols if s.name == "T"), sp.S.One) if by == past else sp.S.One
-            found[tie] = sp.simplify(slope * period)
-    return found
-
-
-def _stands(scene, q):
-    """Tell whether an angle of zero is up: it falls away from there at the scene's own values."""
-    acting = _acting(scene, q) if len(scene.coordinates) <= LOOKED_AT else ()
-    try:
-        moment, names = formula(*acting)
-        return moment({**dict.fromkeys(names, 0.0), **scene.values, type(q).__name__: 0.01})[0] > 0
-    except (TypeError, NotImplementedError, KeyError, ZeroDivisionError, IndexError):
-        return False
-
-
-def _rough(scene):
-    """Return the coordinates whose rate is rubbed by a floor at rest."""
-    listed = [contact for entry in scene.eom for contact in getattr(entry, "contacts", ()) if isinstance(contact, friction)]
-    slips = [one.slip.doit() if hasattr(one.slip, "doit") else one.slip for one in listed]
-    return {type(q).__name__ for q in scene.coordinates if q.diff(t) in slips}
