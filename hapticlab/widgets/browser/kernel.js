@@ -4,7 +4,7 @@
 const KIND = { ready: 0, alive: 1, gone: 2, intend: 3, hold: 4, move: 5, press: 6 }
 const HEARTBEAT = 400 // [ms]
 const PAGE = Math.floor(Math.random() * 2 ** 48) // differs after the page was loaded anew
-const WORDLESS = 1500 // [ms] without a frame: one comes every 250 ms at least
+const WORDLESS = 1400 // [ms] without a frame: one comes every 250 ms at least
 
 class Kernel {
   constructor(model) {
