@@ -68,8 +68,9 @@ def plot_intervals(intervals: Mapping[str, Estimate | tuple[float, float]], *, l
         axes.set(xlabel=label, xlim=(low, high), ylim=(len(ends) - 0.5, -0.5))
         axes.set_yticks(rows if named else [], list(intervals) if named else [])
     told = [f"{name} {a:.3g} to {b:.3g}" for name, (a, b) in zip(intervals, ends, strict=True)] if named else []
-    missing = [] if true is None else [f"{misses.sum()} of {len(ends)} miss the true value {true:.4g}"]
-    figure.alt = f"Intervals of {label}: {'; '.join(told + missing)}."
+    if true is not None:
+        told.append(f"{misses.sum()} of {len(ends)} miss the true value {true:.4g}")
+    figure.alt = f"Intervals of {label}: {'; '.join(told)}."
     return figure
 
 

@@ -345,7 +345,7 @@ CHECKS = {
     "no gate, lab 08": ("hl.check('08.penalty_force', lambda gap, rate, k, b: np.maximum(0, -k*gap - b*rate))", "open", "closed"),
     "a pull": (
         "hl.check('08.penalty_force', lambda gap, rate, k, b: np.where(gap < 0, -k*gap - b*rate, 0.0))",
-        "pull",
+        "stick together",
         "never below 0",
     ),
     "the ball's mass alone": (
@@ -355,8 +355,8 @@ CHECKS = {
     ),
     "a whole period": (
         "hl.check('08.stiffest_penalty', lambda m, M, h: m*M/(m + M)*(2*np.pi/(10*h))**2)",
-        "half a period",
-        "not a whole",
+        "whole cycle",
+        "half a cycle",
     ),
     "no square": ("hl.check('08.stiffest_penalty', lambda m, M, h: m*M/(m + M)*np.pi/(10*h))", "square", "pi/"),
     "relative velocity": (

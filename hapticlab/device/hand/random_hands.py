@@ -55,7 +55,10 @@ def random_hands(
     """
     hands = count("hands", hands, least=1, error=PaddleError)
     random = np.random.default_rng(seed)
-    columns = {name: 10 ** random.uniform(*_ends(name, ends), hands) for name, ends in (("m", m), ("b", b), ("k", k))}
+    columns = {}
+    for name, ends in (("m", m), ("b", b), ("k", k)):
+        least, most = _ends(name, ends)
+        columns[name] = 10 ** random.uniform(least, most, hands)
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return tuple(Hand(**dict(zip(columns, row, strict=True)), push=push) for row in rows)
 
