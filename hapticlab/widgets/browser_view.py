@@ -23,7 +23,7 @@ KINDS = ("ready", "alive", "gone", "intend", "hold", "move", "press")
 BROWSER = Path(__file__).parent / "browser"
 SCRIPTS = (
     "samples.js", "playback.js", "labels.js", "parts.js", "picture.js", "bins.js", "traces.js", "loop.js", "sound.js",
-    "sliders.js", "hand.js", "words.js", "spoken.js", "controls.js", "view.js", "kernel.js",
+    "sliders.js", "hand.js", "words.js", "spoken.js", "controls.js", "sight.js", "view.js", "kernel.js",
 )  # fmt: skip
 #: time on view in the traces, of the clock [s]
 SECONDS = 4.0

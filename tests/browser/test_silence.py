@@ -97,6 +97,53 @@ def test_a_hidden_tab_stops_a_motor_and_keeps_few_frames(page):
     assert waiting[-1] == pytest.approx(5999 / 60) and waiting[0] == pytest.approx(waiting[-1] - 5)
 
 
+# Settles once the view was scrolled out of sight, or back into it: a younger observer is told after the view's own.
+SIGHT = """(on) => new Promise((done) => {
+  const observer = new IntersectionObserver((entries) => {
+    if (entries.at(-1).isIntersecting !== on) return
+    observer.disconnect()
+    done(on)
+  })
+  observer.observe(view.root)
+})"""
+OFF = {"flags": {"running": False, "motor": False}, "status": "Motor off.", "values": {}}
+ON = {"flags": {"running": True, "motor": True}, "status": "Motor on.", "values": {}}
+
+
+@pytest.mark.always("p")
+@pytest.mark.parametrize("key", ["p", "Enter", "a"])
+def test_a_view_out_of_sight_starts_no_motor_and_stops_one(page, key):
+    page.evaluate("frame", ON if key == "a" else OFF)
+    page.evaluate("view.controls.buttons.run.focus()")
+    page.evaluate("document.body.appendChild(document.createElement('div')).style.height = '5000px'")
+    page.evaluate("scrollTo(0, 5000)")
+    page.evaluate(SIGHT, False)
+    page.keyboard.press(key)  # the focus is still in the view
+    assert presses(page) == []
+    page.evaluate(SIGHT, True)  # but the view comes back, so that the next press is seen
+    page.keyboard.press(key)
+    assert presses(page) == [{"a": "restart"}.get(key, "start")]
+    page.evaluate("frame", ON)
+    page.evaluate("scrollTo(0, 5000)")
+    page.evaluate(SIGHT, False)
+    page.keyboard.press("p")
+    assert presses(page)[1:] == ["pause"]
+    page.clock.run_for(3100)
+    assert presses(page)[1:] == ["pause", "pause"]
+
+
+@pytest.mark.always("p")
+@pytest.mark.parametrize("key", ["p", "a", "Enter"])
+def test_a_key_that_is_held_is_one_press(page, key):
+    page.evaluate("frame", ON)
+    page.evaluate("view.controls.buttons.run.focus()")
+    for _ in range(4):  # from the second on as a keyboard repeats it
+        page.keyboard.down(key)
+        page.evaluate("frame", OFF)
+    page.keyboard.up(key)
+    assert presses(page) == ["restart" if key == "a" else "pause"]
+
+
 @pytest.mark.wide
 def test_a_parameter_of_the_first_state_says_when_it_acts_and_more_than_three_fold(page):
     labels = page.evaluate("() => view.sliders.map((slider) => slider.row.querySelector('label').textContent)")

@@ -35,6 +35,7 @@ class Controls {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.type === "text") return false
     const key = event.key.length === 1 ? event.key.toUpperCase() : event.key // Caps Lock or not
     const name = key === "Escape" ? held && "hold" : Object.keys(KEYS).find((each) => KEYS[each] === key)
+    if (event.repeat && (name || key === "Enter")) return true // a key that is held is one press
     if (!name || !this.buttons[name] || this.isOff(name)) return false
     this.pressed(name)
     return true

@@ -105,6 +105,8 @@ class View {
       run: runs ? "pause" : this.about.kind === "board" ? "start" : "resume", again: "restart", slow: "slow",
       record: flags.recording ? "stop" : "record", save: "save", replay: "replay",
     }
+    // the focus stays in a view that was scrolled away: a motor that started there would run unseen
+    if (!this.seen && said[name] !== "pause") return this.root.scrollIntoView({ block: "nearest" })
     if (name === "hold") return flags.held ? this.tell("hold", 0) : this.hand.take(this.hand.x)
     if (said[name]) return this.source.press(said[name])
     if (name === "zoom") this.zoom()
@@ -129,28 +131,16 @@ class View {
 
   // --- who sees it
 
-  // Nothing runs for a view off the screen, or in a tab that is hidden; a board gets 3 s, and then waits for Start.
+  // Nothing runs for a view that nobody sees; a board gets 3 s, and then waits for Start.
   watch() {
-    let on = true
-    const look = () => {
+    const look = (seen) => {
       clearTimeout(this.hiding)
-      const seen = on && !document.hidden
       this.seen = seen
       this.hush()
       if (seen || this.about.kind !== "board") this.source.show(seen)
       else this.hiding = setTimeout(() => this.source.press("pause"), HIDDEN)
     }
-    const observer = new IntersectionObserver((entries) => {
-      on = entries[entries.length - 1].isIntersecting
-      look()
-    })
-    observer.observe(this.root)
-    document.addEventListener("visibilitychange", look)
-    this.cleanups.push(() => {
-      clearTimeout(this.hiding)
-      observer.disconnect()
-      document.removeEventListener("visibilitychange", look)
-    })
+    this.cleanups.push(watchSight(this.root, look), () => clearTimeout(this.hiding))
   }
 
   hush() {
