@@ -149,7 +149,7 @@ def itself():
 @pytest.mark.parametrize(
     ("answer", "words"),
     [
-        (lambda x, v, k: math.nan, "likely sli...umber,"),
+        (lambda x, v, k: math.nan, "likely slip: NaN (not a number) or infinity comes from 0/0"),
         (lambda x, v, k: math.inf, "inf N, expected"),
         (
             lambda position, v, k: 200 * position,

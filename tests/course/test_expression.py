@@ -64,7 +64,7 @@ def test_another_way_to_write_the_same_is_right(same):
         (x(n) * RIGHT, "It is x(n) times too large, so its unit is wrong: should it be divided by x(n)?"),
         (RIGHT / k, "It does not change with k: did you forget k?"),
         (RIGHT + b * v(n), "It changes with b, on which it should not depend."),
-        (k * (x(n) - x_o), "-0.0...ot zero where no force should act: is a condition missing or too wide? A scene"),
+        (k * (x(n) - x_o), "not zero where no force should act: is a condition missing or too wide? A scene writes it hl.when("),
         (hl.when(x(n) <= x_o, k * (x(n) - x_o)), "its condition is reversed, such as <= instead of >=."),
         (hl.when(x(n) >= 2 * x_o, k * (x(n) - x_o)), "is its condition too narrow?"),
         (RIGHT * 1000, "1000 times too large"),
