@@ -144,7 +144,8 @@ def test_a_byte_that_is_not_as_written(connect, tmp_path, at):
 
     board = connect(port_class=Flipping)
     image = talker("n", 1000)
-    words = f"failed at 0x{at:04x}: it reads 0x{image[at] ^ 0x10:02x}, needs 0x{image[at]:02x}. The board is stopped with its motor off. Flash it again"
+    words = f"failed at 0x{at:04x}: it reads 0x{image[at] ^ 0x10:02x}, needs 0x{image[at]:02x}. "
+    words += "The board is stopped with its motor off. Flash it again"
     with pytest.raises(PaddleError, match=words):
         flash("test://", hex_file(tmp_path / "new.hex", image))
     assert stands_still(board)
