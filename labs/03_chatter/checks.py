@@ -258,8 +258,8 @@ LAB = Lab(
                     "c",
                     slips={
                         "a": (
-                            "Below the stability limit the damping pays for the hold, and at half the stiffness or "
-                            "twice the rate by a factor of two. The oscillation remained."
+                            "Below the stability limit the damping pays for the hold, and half the stiffness or twice the "
+                            "rate halves the leak. The oscillation remained."
                         ),
                         "b": (
                             "A delay drives an oscillation that grows until the handle leaves the wall, and that "
