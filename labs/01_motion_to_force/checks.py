@@ -315,7 +315,10 @@ LAB = Lab(
                             0.77850388,
                             0.491581859,
                             0.185062796,
-                        ): "The damper acts on the hand but not on the mass. Use the same F_c as the force of the scene and as the force on the mass.",
+                        ): (
+                            "The damper acts on the hand but not on the mass. Use the same F_c as the force of the scene "
+                            "and as the force on the mass."
+                        ),
                         (
                             0.0,
                             0.4,
@@ -342,7 +345,10 @@ LAB = Lab(
                             0.790914967,
                             0.511856227,
                             0.215270371,
-                        ): "The damper acts on the mass but not on the hand. Use the same F_c as the force of the scene and as the force on the mass.",
+                        ): (
+                            "The damper acts on the mass but not on the hand. Use the same F_c as the force of the scene "
+                            "and as the force on the mass."
+                        ),
                     },
                 ),
                 Case(
