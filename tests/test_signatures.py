@@ -9,8 +9,8 @@ RECORDS = {
     "hl.SimulatedPaddle", "hl.devices.PaddleProfile", "hl.records.Telemetry", "hl.mechanics.Mechanics", "hl.people.Task",
     "hl.design.CompensationLimit", "hl.methods.Method",
 }  # fmt: skip
-#: nine: their keywords pass through paddle.run, live and many tests as they are
-NINE = {"hl.compile", "hl.sweep"}
+#: nine: keywords that pass through paddle.run, live and many tests as they are; and for hl.live what a first view needs
+NINE = {"hl.compile", "hl.sweep", "hl.live"}
 
 
 def counts():

@@ -33,19 +33,21 @@ BEHIND, SELDOM = 1.5, 4.0
 DRIFT = 0.01
 
 
-def front(session):
+def front(session, keys=True):
     """Return the widget that shows a session in a notebook and hands it what the browser says.
 
     Parameters
     ----------
     session : Session
+    keys : bool
+        Whether buttons have keys: False where another widget leads.
 
     Raises
     ------
     EngineMissingError
         Without anywidget.
     """
-    widget = _canvas()(about=about(session))
+    widget = _canvas()(about={**about(session), "keys": keys})
     speaker, listener = Speaker(widget.send), Listener(session)
 
     def heard(_, content, buffers):

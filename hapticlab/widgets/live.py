@@ -45,7 +45,6 @@ def live(
     sliders: Mapping[str, tuple[float, float]] | None = None,
     time_scale: float = 1.0,
     picture: Any = None,
-    show_force: bool = True,
     let_go: bool = False,
     rehearsal: Rehearsal = REHEARSAL,
     plain: bool = False,
@@ -71,8 +70,6 @@ def live(
         Scene time over the clock's: 0.1 is slow motion. A board's is 1.
     picture : str, shapes or callable, optional
         Instead of the scene's own picture: see :func:`~hapticlab.widgets.picture.moving_picture`.
-    show_force : bool
-        False shows neither force, energy nor target position: for experiments whose answer they would tell.
     let_go : bool
         True: a hand that is dragged by the pointer lets go of the handle where the drag is released, so that the handle can be
         thrown. On a board the hand is yours, and nothing changes.
@@ -112,7 +109,7 @@ def live(
         raise PaddleError(f"time_scale = {time_scale:g}; a board runs in real time: leave it out, or take a SimulatedPaddle.")
     instance("rehearsal", rehearsal, Rehearsal, "hl.people.Rehearsal(intent=..., duration=...)", error=PaddleError)
     _check_options(compile_options)
-    looks = {"sliders": sliders, "speed": time_scale, "picture": picture, "show_force": show_force, "let_go": let_go}
+    looks = {"sliders": sliders, "speed": time_scale, "picture": picture, "let_go": let_go}
     session = Session(paddle, scene, **looks, **compile_options)
     return LiveView(session, rehearsal, compile_options, plain)
 

@@ -34,8 +34,10 @@ class Session:
     ----------
     paddle : SimulatedPaddle or SerialPaddle
     scene : Scene
-    sliders, speed, picture, show_force, let_go
-        As for :func:`hapticlab.live`.
+    sliders, speed, picture, let_go
+        As for :func:`hapticlab.live`, speed its time_scale.
+    show_force : bool
+        False shows neither force, energy nor target position: for experiments whose answer they would tell.
     clock : callable
         Seconds, as time.monotonic gives them.
     in_thread : bool

@@ -28,7 +28,7 @@ TIMELY = 0.5
 PAST = 5e-3
 CAME_LATE = "Start came late, or just after the notebook was silent: press it again"
 MOTOR_OFF = "The motor is off. Press Start: the scene then begins at its first state"
-#: scene time over the clock's in slow motion
+#: scene time over the clock's in slow motion, at most
 SLOW = 0.1
 
 
@@ -38,7 +38,7 @@ class Stage:
     Parameters
     ----------
     paddle, scene, sliders, speed, picture, show_force, let_go, **options
-        As for :func:`hapticlab.live`.
+        As for :class:`~hapticlab.widgets.session.Session`.
     clock : callable
         Seconds.
     """
@@ -56,7 +56,7 @@ class Stage:
         self.awake, self._wants_to_run = False, self.source.kind == "simulated"
         self.stopped = "time stood still" if self._wants_to_run else "the motor went off"
         self.caught = None
-        self._note, self._note_until, self._lost = "", -1.0, ""
+        self._note, self._note_until, self._lost, self._vibration = "", -1.0, "", ""
         self._status, self._next_look, self._next_frame = "", -1.0, -1.0
 
     @property
@@ -73,7 +73,8 @@ class Stage:
         in contact with; ``loop``, whether F over x may be shown; ``x_range``, how far a hand goes, and ``box``, [left,
         right, bottom, top], of the picture [m]; ``along``, the direction in which the handle moves there; ``let_go``,
         whether a drag that is released lets go; ``overview`` and ``help``, words on what is seen and on what moves it;
-        ``speed``; ``T`` and ``apart``, between two samples and between two rows of a frame [s]; ``columns``.
+        ``speed`` and ``slow``, scene time over the clock's, now and in slow motion; ``T`` and ``apart``, between two samples
+        and between two rows of a frame [s]; ``columns``.
         """
         box, values = self.picture.box, self.values
         return {
@@ -90,6 +91,7 @@ class Stage:
             "overview": overview_words(self.source, self.scene, self.picture.along),
             "help": help_words(self.source),
             "speed": self.motion.speed,
+            "slow": min(SLOW, self._speed),
             "T": self.source.period,
             "apart": rows_apart(self.source.period),
             "columns": [*COLUMNS, *self.motion.watched],
@@ -207,8 +209,8 @@ class Stage:
         """Begin or end slow motion."""
         if self.source.kind == "board":
             raise PaddleError("A board runs in real time, so slow motion needs a SimulatedPaddle")
-        usual = self._speed if self._speed != SLOW else 1.0
-        self.motion.pass_at(SLOW if self.motion.speed != SLOW else usual)
+        usual, slow = self._speed if self._speed > SLOW else 1.0, min(SLOW, self._speed)
+        self.motion.pass_at(slow if self.motion.speed != slow else usual)
 
     def resume(self):
         if self._lost:
@@ -255,14 +257,15 @@ class Stage:
 
     def words(self):
         """Return one or two sentences about what goes on."""
-        motion, source = self.motion, self.source
+        motion, source, self._vibration = self.motion, self.source, ""
         board = source.kind == "board"
         if motion.replaying:
             said = ["Replaying a record"]
         elif motion.running:
             x, F, contact = motion.traces.recent()
             said = [source.waits or f"{'Motor on' if board else self._pace_words()}{contact_words(contact[-len(x) // 4 :])}"]
-            said += [chatter_words(x, F, source.period), *(NOTICED[name] for name in motion.noticed())]
+            self._vibration = chatter_words(x, F, source.period)
+            said += [self._vibration, *(NOTICED[name] for name in motion.noticed())]
             said += ["" if board else late_words(motion.pace.behind(self.clock()))]
             said += ["" if motion.held else "The handle is let go"]
         else:
@@ -312,7 +315,8 @@ class Stage:
         """Return a frame's flags."""
         flags = {name: getattr(self.motion, name) for name in ("running", "recording", "replaying", "held")}
         values = self.values
-        flags |= {"motor": self.source.motor, "recorded": self.motion.has_record, "speed": self.motion.speed}
+        flags |= {"motor": self.source.motor, "recorded": self.motion.has_record, "vibrates": bool(self._vibration)}
+        flags |= {"speed": self.motion.speed, "T": self.motion.traces.T, "apart": rows_apart(self.motion.traces.T)}
         return {**flags, "values": {span.name: values[span.name] for span in self.spans}}
 
     def _frame_flags(self, wanted):

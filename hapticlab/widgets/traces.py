@@ -49,7 +49,7 @@ class Traces:
         x, F = samples["x"], samples["F"]
         energy = self._drawn(samples)
         first = -self._count % self._step
-        known = {"x_true": x, "F_applied": F, **samples, "E": energy}
+        known = {"x_true": x, "F_applied": F, "x_switch": samples.get("x_true", x), **samples, "E": energy}
         names = (*COLUMNS, *self._watched)
         rows = np.full((len(range(first, len(x), self._step)), len(names)), np.nan, np.float32)
         for k, column in enumerate(known.get(name) for name in names):

@@ -3,7 +3,7 @@
 from hapticlab.widgets.browser_view import BROWSER, SCRIPTS
 
 PARTS = """View, Kernel, Playback, Samples, Bins, Scale, Loop, Voice, Slider, between, lastCycle, niceStep, onDark, tidy, shown,
-number"""
+number, hint"""
 
 
 def add_scripts(page):

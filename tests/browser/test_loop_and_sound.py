@@ -14,25 +14,31 @@ K, T = 500.0, 1e-3
 def page(browser):
     page = browser.new_page()
     add_scripts(page)
+    page.add_script_tag(content=STROKES)
     yield page
     page.close()
 
 
-def rows(x, F, contact):
+def rows(x, F, contact, t=None, **more):
     """Rows of frames of a wall, as the kernel makes them."""
-    samples = {"t": np.arange(len(x)) * T, "x": x, "F": F, "contact": contact}
+    samples = {"t": np.arange(len(x)) * T if t is None else t, "x": x, "F": F, "contact": contact, **more}
     return Traces(T).add(samples).ravel().tolist()
 
 
-LOOP = """([rows, columns, touches]) => {
+LOOP = """([rows, columns, touches, given = {}]) => {
   const canvas = document.body.appendChild(document.createElement("canvas"))
-  const samples = new parts.Samples(columns)
-  const loop = new parts.Loop(canvas, { touches, T: 1e-3, apart: 1e-3 }, samples)
+  const samples = Object.assign(new parts.Samples(columns), { T: 1e-3, apart: 1e-3, ...given })
+  const loop = new parts.Loop(canvas, { touches, kind: given.kind }, samples)
   loop.resize(300, 200)
-  samples.add(new Float32Array(rows))
+  if (given.speed) loop.speed = given.speed
   const theme = { ink: "#000", quiet: "#555", grid: "#ddd", given: "rgb(255, 0, 0)", taken: "rgb(0, 0, 255)" }
-  loop.draw(1, theme)
+  const chunk = samples.width * 1000 // as frames come
+  for (let k = 0; k < rows.length; k += chunk) {
+    samples.add(new Float32Array(rows.slice(k, k + chunk)))
+    loop.draw(k, theme)
+  }
   const last = loop.latest()
+  if (!last) return { words: loop.words() }
   const pixels = () => loop.context.getImageData(0, 0, canvas.width, canvas.height).data
   const colours = pixels()
   loop.context.clearRect(0, 0, 300, 200)
@@ -45,7 +51,16 @@ LOOP = """([rows, columns, touches]) => {
   const area = covered * (1 / (loop.x(1) - loop.x(0))) * (1 / (loop.y(0) - loop.y(1))) // [m] and [N] of a pixel
   const some = (k) => colours.some((value, i) => i % 4 === k && value > 200 && colours[i + 2 - 2 * k] < 90)
   canvas.remove()
-  return { energy: last.energy, area, words: loop.words(), isRed: some(0), isBlue: some(2) }
+  return { energy: last.energy, area, strokes: strokes(loop), words: loop.words(), isRed: some(0), isBlue: some(2) }
+}"""
+
+
+# How many strokes draw all that is kept.
+STROKES = """const strokes = (loop) => {
+  let count = 0
+  const context = { beginPath() {}, lineTo() {}, moveTo: () => count++ }
+  Object.assign(Object.create(loop), { context }).path(loop.samples.oldest, loop.samples.count - 1)
+  return count
 }"""
 
 
@@ -64,6 +79,70 @@ def test_the_shaded_loop_of_a_contact_is_the_energy_of_the_held_force(page, sign
     assert (found["isRed"], found["isBlue"]) == (sign > 0, sign < 0)
 
 
+def press(samples=40, depth=0.01, rest=5):
+    """Into a wall at 0 and out again, from and to 2 mm before it."""
+    way = np.sin(np.pi * np.arange(samples) / samples) ** 2
+    return np.concatenate([np.full(rest, -0.002), depth * way - 0.002, np.full(rest, -0.002)])
+
+
+def held(x, F):
+    """Return the energy that forces give which are held from sample to sample [J]."""
+    return -np.sum(F[:-1] * np.diff(x))
+
+
+@pytest.mark.parametrize("delay", [0.4, 1.7])  # samples
+def test_under_any_delay_the_shaded_area_is_the_energy_beside_it(page, delay):
+    """Each force acts from where the handle is when it comes: x(t + delay)."""
+    fine = np.interp(np.arange(4900) / 100, np.arange(50), press())
+    x, later = fine[::100], np.roll(fine, -round(100 * (delay % 1)))[::100]
+    F = K * np.maximum(x, 0)
+    F_applied = np.roll(F, int(delay))
+    given = held(later, F_applied)
+    found = page.evaluate(LOOP, [rows(x, F, F > 0, F_applied=F_applied, x_switch=later), list(COLUMNS), True])
+    assert found["energy"] == pytest.approx(given, rel=1e-3)
+    assert found["area"] == pytest.approx(given, rel=0.04)  # pixels
+    assert found["isRed"]
+
+
+def test_a_contact_longer_than_what_is_kept_has_its_energy_and_is_not_drawn(page):
+    short, long = press(), np.concatenate([press()[:25], np.full(10_000, 0.008), press()[25:]])
+    x = np.concatenate([*[short] * 4, long])  # the energy before it is far from 0
+    F = K * np.maximum(x, 0)
+    found = page.evaluate(LOOP, [rows(x, F, F > 0), list(COLUMNS), True])
+    assert found["energy"] == pytest.approx(held(long, K * np.maximum(long, 0)), rel=2e-3)
+    assert found["words"][1] == "more given back than taken; too long to draw"
+
+
+@pytest.mark.parametrize(
+    ("kind", "told"), [("board", "samples are missing: no contact is counted across a gap"), ("simulated", "")]
+)
+def test_what_samples_are_missing_from_is_no_loop(page, kind, told):
+    x = np.concatenate([press(), press(depth=0.007)])
+    t, F = np.arange(len(x)) * T, K * np.maximum(x, 0)
+    cut = np.r_[0:20, 25 : len(x)]  # within the first contact
+    found = page.evaluate(LOOP, [rows(x[cut], F[cut], F[cut] > 0, t[cut]), list(COLUMNS), True, {"kind": kind}])
+    assert found["energy"] == pytest.approx(held(x[50:], F[50:]), rel=1e-3)  # of the second
+    assert found["strokes"] == 2 and found["words"][1] == (told or "more given back than taken")
+    alone = cut[cut < 50]
+    found = page.evaluate(LOOP, [rows(x[alone], F[alone], F[alone] > 0, t[alone]), list(COLUMNS), True])
+    assert found["words"][0] == "No contact yet"
+    sine = np.sin(2 * np.pi * np.arange(1000) / 600)
+    cut = np.r_[0:650, 660:1000]  # each half has one rise through the mean
+    found = page.evaluate(LOOP, [rows(sine[cut], sine[cut], np.full(len(cut), np.nan), cut * T), list(COLUMNS), False])
+    assert found["words"][0] == "No cycle yet"
+
+
+def test_a_loop_says_what_it_is_where_that_is_less_than_it_seems(page):
+    x = np.concatenate([press(20)] * 5)
+    F = K * np.maximum(x, 0)
+    thinned = {"T": 4e-4, "apart": 8e-4}
+    found = page.evaluate(LOOP, [rows(x, F, F > 0, np.arange(len(x)) * 8e-4), list(COLUMNS), True, {**thinned, "speed": 0.1}])
+    assert not found["isRed"] and found["words"][1] == "more given back than taken; not drawn to scale"
+    assert found["words"][0].endswith("per contact (5 in 1 s of scene time)")
+    nothing = page.evaluate(LOOP, [rows(x, 0 * F, F > 0), list(COLUMNS), True])["words"]
+    assert nothing == ["0.00 mJ per contact (5 in 1 s)", "as much given back as taken"]
+
+
 def test_where_nothing_is_touched_the_loop_is_a_cycle(page):
     """A damper takes pi b w A^2 in each cycle, and the hold gives a little back."""
     A, w, b = 0.01, 2 * np.pi * 2.0, 2.0
@@ -78,7 +157,7 @@ def test_where_nothing_is_touched_the_loop_is_a_cycle(page):
 def test_no_loop_is_told_before_there_is_one(page):
     said = page.evaluate(
         """(columns) => [true, false].map((touches) => {
-            const loop = new parts.Loop(document.createElement("canvas"), { touches, T: 1, apart: 1 }, new parts.Samples(columns))
+            const loop = new parts.Loop(document.createElement("canvas"), { touches }, new parts.Samples(columns))
             loop.resize(300, 200)
             loop.draw(1, {})
             return loop.words()[0]

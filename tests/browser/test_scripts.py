@@ -93,6 +93,22 @@ def test_an_axis_grows_at_once_and_shrinks_late(page):
         assert low == 0 and reached <= high <= 2.1 * reached
 
 
+@pytest.mark.parametrize("value", [0.0, 1e15, -1e17, 3.4e38])
+def test_an_axis_of_a_constant_has_few_lines_however_large_it_is(page, value):
+    lines, low, high = page.evaluate(
+        """(value) => {
+            const scale = new parts.Scale(0.1)
+            scale.reach(value, value, 4)
+            const lines = []
+            for (const line of scale.lines()) if (lines.push(line) > 1000) break
+            return [lines, scale.low, scale.high]
+        }""",
+        value,
+    )
+    assert 2 <= len(lines) <= 12 and len(set(lines)) == len(lines)
+    assert low <= value <= high and low < high
+
+
 @pytest.mark.parametrize(("least", "step"), [(0.7, 1), (1.2, 2), (2.5, 5), (0.031, 0.05), (60, 100)])
 def test_steps_of_an_axis_are_round(page, least, step):
     assert page.evaluate("(least) => parts.niceStep(least)", least) == pytest.approx(step)
@@ -113,6 +129,7 @@ def test_colours_turn_over_for_a_dark_page(page):
 
 def test_numbers_read_well(page):
     said = page.evaluate("() => [0.1 + 0.2, -0.00004, 12.345, 123.4].map((x) => [parts.tidy(x), parts.shown(x)])")
+    assert page.evaluate("() => parts.shown(NaN)") == "–"
     assert json.dumps(said) == '[["0.3", "0.30"], ["-0.00004", "0.00"], ["12.345", "12.3"], ["123.4", "123"]]'
 
 
@@ -121,3 +138,8 @@ def test_a_number_may_have_a_comma_but_not_two_meanings(page):
     assert page.evaluate("(typed) => typed.map(parts.number).map((x) => (isNaN(x) ? null : x))", typed) == [
         12.5, -0.5, 1000, 0.005, None, None, None, None, None,
     ]  # fmt: skip
+
+
+def test_a_vibration_is_met_with_what_shows_it(page):
+    view = {"about": {"kind": "simulated"}, "flags": {"running": True, "held": True, "vibrates": True}, "touched": True}
+    assert page.evaluate("parts.hint", view).startswith("M slows time down")

@@ -139,9 +139,58 @@ def test_a_key_that_is_held_is_one_press(page, key):
     page.evaluate("view.controls.buttons.run.focus()")
     for _ in range(4):  # from the second on as a keyboard repeats it
         page.keyboard.down(key)
-        page.evaluate("frame", OFF)
+        page.evaluate("frame", ON if key == "a" else OFF)
     page.keyboard.up(key)
     assert presses(page) == ["restart" if key == "a" else "pause"]
+
+
+SIMULATED = {**ABOUT, "kind": "simulated", "let_go": False, "slow": 0.02}
+
+
+def other(page, about):
+    """Show another view instead, once it is seen."""
+    page.evaluate("view.close(), view.root.remove()")
+    page.evaluate(OPEN, about)
+    page.evaluate(SIGHT, True)
+
+
+def test_while_nobody_hears_it_a_hand_moves_nothing(page):
+    other(page, SIMULATED)
+    moved = "said.filter(([kind]) => kind === 3 || kind === 4).length"
+    assert page.evaluate("view.stage.ariaDisabled") == "true"
+    box = page.locator("canvas.hl-stage").bounding_box()
+    for heard in (False, True):
+        page.mouse.move(box["x"] + 100, box["y"] + 50)
+        page.mouse.down()
+        page.mouse.move(box["x"] + 200, box["y"] + 50)
+        page.mouse.up()
+        page.evaluate("view.stage.focus()")
+        page.keyboard.press("ArrowRight")
+        assert bool(page.evaluate(moved)) is heard
+        page.evaluate("frame", {"flags": {"running": True, "held": True}, "values": {}})
+    assert page.evaluate("view.stage.ariaDisabled") == "false"
+
+
+@pytest.mark.wide
+def test_slow_is_pressed_at_its_own_speed_and_keys_can_be_off(page):
+    other(page, {**SIMULATED, "keys": False})
+    for speed, pressed in ((0.1, "false"), (0.02, "true")):
+        page.evaluate("frame", {"flags": {"running": True, "speed": speed, "T": 2e-3, "apart": 2e-3}, "values": {}})
+        assert page.evaluate("view.controls.buttons.slow.ariaPressed") == pressed
+    assert page.evaluate("[view.samples.T, view.samples.apart]") == [2e-3, 2e-3]  # those of a record that is replayed
+    page.evaluate("view.stage.focus()")
+    for key in "pamryl":
+        page.keyboard.press(key)
+    assert presses(page) == [] and page.evaluate("said.filter(([kind]) => kind === 4)") == []
+
+
+@pytest.mark.wide
+def test_a_number_with_two_meanings_is_told_with_both(page):
+    page.evaluate("frame", OFF)
+    entry = page.locator("input.hl-entry").first
+    entry.fill("1,000")
+    entry.press("Enter")
+    assert page.locator(".hl-limits").first.text_content() == "“1,000” could be 1 or 1000: type one of these; l stays at 30 mm"
 
 
 @pytest.mark.wide

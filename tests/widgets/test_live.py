@@ -94,6 +94,16 @@ def test_slow_motion_is_slow():
     assert abs(stage.session.source.ticks - 1100) <= 2
 
 
+def test_a_view_that_begins_slower_than_slow_motion_is_slow():
+    stage = Stage(speed=0.02).open()
+    speeds = []
+    for _ in range(2):
+        stage.session.press("slow")
+        stage.go(0.5)
+        speeds.append(stage.flags["speed"])
+    assert speeds == [1.0, 0.02] and stage.session.description()["slow"] == 0.02
+
+
 def test_a_press_slows_time_down_also_that_of_a_replay():
     stage = Stage().open()
     stage.session.press("record")
@@ -298,6 +308,26 @@ def test_what_a_scene_watches_has_a_column_and_a_unit():
     assert np.array_equal(rows[:, about["columns"].index("theta")], log.theta[at].astype(np.float32))
 
 
+def test_a_row_says_where_a_delayed_force_began_to_act():
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=4e-4, hand=hl.Hand("pinch"))).open()
+    stage.session.press("record")
+    stage.go(0.5, pointer=lead)
+    about, log = stage.session.description(), stage.session.recorded()
+    found = stage.rows[-100:, [about["columns"].index(name) for name in ("x_switch", "x_true")]]
+    known = np.column_stack([log.x_switch, log.x])[-100:].astype(np.float32)
+    assert np.array_equal(found, known) and not np.array_equal(found[:, 0], found[:, 1])
+
+
+def test_a_frame_says_how_far_apart_the_samples_of_a_replayed_record_are():
+    stage = Stage().open()
+    stage.go(0.2)
+    assert (stage.flags["T"], stage.flags["apart"]) == (T, T)
+    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=2e-4).run(WALL, duration=0.5, progress=False)
+    stage.session.pressed("replay", log)
+    rows = np.concatenate([frame.rows for frame in stage.go(0.2) if len(frame.rows)])
+    assert stage.flags["T"] == 2e-4 and np.allclose(np.diff(rows[:, 0]), stage.flags["apart"], atol=1e-6)
+
+
 def test_chatter_is_said_and_a_bounce_is_not():
     t = np.arange(1000) * T
     shaken = 4e-4 * np.sin(2 * np.pi * 41 * t)
@@ -319,7 +349,10 @@ def test_a_stiff_wall_is_said_to_chatter_at_the_frequency_of_the_record():
     stage.go(1.5, pointer=lambda now: 0.014)
     found = hl.chatter(stage.session.recorded())
     assert found.locked
-    assert f"at {found.frequency:.0f} Hz" in stage.session.status
+    assert f"at {found.frequency:.0f} Hz" in stage.session.status and stage.flags["vibrates"]
+    stage.session.press("pause")
+    stage.go(0.5)
+    assert not stage.flags["vibrates"]
 
 
 @pytest.mark.wide

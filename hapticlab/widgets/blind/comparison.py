@@ -207,7 +207,7 @@ class BlindComparison:
             about = {"question": self.task.question, "board": board, **self._seconds}
             self._head = head(about, self._state())
             self._head.on_msg(self._heard)
-            self._box = widgets.VBox([self._head, canvas(self._session)])
+            self._box = widgets.VBox([self._head, canvas(self._session, keys=False)])
             for name in ("hl-blind", "hl-board")[: 1 + board]:
                 self._box.add_class(name)
         return self._box

@@ -72,6 +72,9 @@ class Bins {
   }
 }
 
+const FINEST = 2 ** -22 // of the values: float32 does not tell apart what is finer
+const LINES = 100 // of an axis, at most
+
 // An axis that grows at once and shrinks only when much too large, so that it does not flicker.
 class Scale {
   constructor(least) {
@@ -81,17 +84,19 @@ class Scale {
 
   // Show from low to high; return whether the axis had to change.
   reach(low, high, lines) {
-    const needed = Math.max(high - low, this.least)
+    const room = Math.max(this.least, FINEST * Math.max(Math.abs(low), Math.abs(high)))
+    const needed = Math.max(high - low, room)
     if (this.step && low >= this.low && high <= this.high && needed >= 0.3 * (this.high - this.low)) return false
     const [least, most] = [this.low, this.high]
     this.step = niceStep(needed / lines)
     this.low = Math.floor(low / this.step + 1e-9) * this.step
-    this.high = Math.max(Math.ceil(high / this.step - 1e-9), Math.round(this.low / this.step) + Math.ceil(this.least / this.step - 1e-9)) * this.step
+    this.high = Math.max(Math.ceil(high / this.step - 1e-9), Math.round(this.low / this.step) + Math.ceil(room / this.step - 1e-9)) * this.step
     return least !== this.low || most !== this.high
   }
 
   // The values at which an axis has a line.
   *lines() {
-    for (let n = Math.ceil(this.low / this.step - 1e-6); n * this.step <= this.high + 1e-6 * this.step; n++) yield n * this.step
+    const first = Math.ceil(this.low / this.step - 1e-6)
+    for (let k = 0; k < LINES && (first + k) * this.step <= this.high + 1e-6 * this.step; k++) yield (first + k) * this.step
   }
 }

@@ -54,7 +54,7 @@ class BlindHead {
   press(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return
     const act = { " ": () => this.feel(), 1: () => this.answer(0), 2: () => this.answer(1) }[event.key]
-    if (!act) return
+    if (!act || (event.key === " " && event.target.localName === "button")) return // Space presses a button by itself
     event.preventDefault()
     event.stopPropagation()
     act()

@@ -2,7 +2,7 @@
 
 const KEYS = { run: "P", again: "A", hold: "L", slow: "M", zoom: "Z", sound: "U", record: "R", save: "S", replay: "Y" }
 const TITLES = {
-  again: "the scene starts again from its first state", slow: "scene time at a tenth of real time", zoom: "the last 0.2 s",
+  again: "the scene starts again from its first state", zoom: "the last 0.2 s",
   sound: "hear the force, at the pitch of scene time",
 }
 const SIMULATED = ["hold", "slow"] // what a board has not
@@ -11,11 +11,13 @@ class Controls {
   // pressed(name): what a hand presses and can be pressed
   constructor(about, pressed) {
     this.board = about.kind === "board"
+    this.slow = about.slow // scene time over the clock's in slow motion
     this.pressed = pressed
     this.buttons = {}
     for (const [name, key] of Object.entries(KEYS)) {
       if (this.board && SIMULATED.includes(name)) continue
-      const title = TITLES[name] ? { title: TITLES[name] } : {}
+      const words = name === "slow" ? `scene time at ${this.slow} times real time` : TITLES[name]
+      const title = words ? { title: words } : {}
       this.buttons[name] = make("button", { type: "button", class: "hl-" + name, "aria-keyshortcuts": key, ...title })
       this.buttons[name].addEventListener("click", () => this.press(name))
     }
@@ -56,7 +58,7 @@ class Controls {
       save: ["", "Save"],
       replay: flags.replaying ? ["■", "Stop"] : ["", "Replay"],
     }
-    const pressed = { slow: flags.speed === 0.1, zoom: zoomed, sound: sounds }
+    const pressed = { slow: flags.speed === this.slow, zoom: zoomed, sound: sounds }
     const stops = board && flags.running // may always be pressed
     const off = {
       run: silent && !stops, again: silent || (board && !flags.motor), record: silent || flags.replaying,

@@ -26,20 +26,26 @@ class Hand {
     }
   }
 
+  // Nothing can be moved while nobody would hear it; the stage stays where the keyboard finds it.
+  switchOff(off) {
+    this.off = off
+    this.stage.setAttribute("aria-disabled", off)
+  }
+
   // Where a movement begins [m].
   get place() {
     return this.view.flags.held ? this.intent : this.x
   }
 
   grasp(event) {
-    if (event.button !== 0) return
+    if (event.button !== 0 || this.off) return
     this.stage.setPointerCapture(event.pointerId)
     this.grab = { pointer: event.pointerId, from: this.along(event), intent: this.place }
     this.take(this.grab.intent)
   }
 
   follow(event) {
-    if (this.grab?.pointer !== event.pointerId) return
+    if (this.grab?.pointer !== event.pointerId || this.off) return
     const way = this.along(event) - this.grab.from
     if (way !== this.grab.way) this.take(this.grab.intent + way)
     this.grab.way = way
@@ -70,7 +76,7 @@ class Hand {
     }
     if (!(event.key in moves) || event.ctrlKey || event.altKey || event.metaKey) return
     event.preventDefault()
-    this.take(moves[event.key])
+    if (!this.off) this.take(moves[event.key])
   }
 
   // Take the handle, if it is not held, and mean to be at x [m].

@@ -11,7 +11,8 @@ class Loop {
     this.context = canvas.getContext("2d")
     this.samples = samples
     this.touches = about.touches
-    this.held = about.apart < 1.5 * about.T // rows are the samples themselves
+    this.board = about.kind === "board"
+    this.speed = 1 // scene time over the clock's
     this.across = new Scale(2) // mm
     this.up = new Scale(0.2) // N
     this.clear()
@@ -19,8 +20,10 @@ class Loop {
 
   clear() {
     this.seen = 0 // rows
-    this.began = null // last row before the contact that goes on
-    this.closed = [] // contacts that ended: {from, to} in rows, energy given back more than taken [J]
+    this.began = null // of the contact that goes on: the last row before it, and the energy there
+    this.cut = false // the beginning of the contact that goes on is missing
+    this.gapAt = -Infinity // [s] when rows were missing last
+    this.closed = [] // contacts that ended: {from, to} in rows, energy given back more than taken [J], whether it is too long
     this.shown = null
     this.readAt = -Infinity
   }
@@ -37,9 +40,15 @@ class Loop {
     for (let row = Math.max(this.seen, samples.oldest); row < samples.count; row++) {
       const touching = samples.at(row, "contact") === 1
       const acts = touching || (samples.at(row, "F") === 0 && samples.at(row, "F_applied") !== 0) // a force that is late
-      if (touching && this.began === null) this.began = Math.max(row - 1, samples.oldest)
+      if (!samples.follows(row)) {
+        this.began = null
+        if (row) this.gapAt = samples.at(row, "t")
+      }
+      this.cut = acts && (this.cut || !samples.follows(row))
+      if (touching && this.began === null && !this.cut) this.began = { row: row - 1, energy: this.energyAt(row - 1) }
       if (acts || this.began === null) continue
-      this.closed.push({ from: this.began, to: row, energy: samples.at(row, "E") - samples.at(this.began, "E") })
+      const { row: from, energy } = this.began // kept, for a long contact outlives its first rows
+      this.closed.push({ from, to: row, energy: this.energyAt(row) - energy, long: from < samples.oldest })
       this.began = null
     }
     this.seen = samples.count
@@ -47,11 +56,19 @@ class Loop {
     this.closed = this.closed.filter((each, k) => k === this.closed.length - 1 || (each.from >= samples.oldest && samples.at(each.to, "t") > old))
   }
 
+  // The energy up to where the force of a row begins to act [J]: under a delay that is later than the row.
+  energyAt(row) {
+    const { samples } = this
+    const before = row > samples.oldest ? samples.at(row - 1, "F_applied") : 0
+    const way = samples.at(row, "x_switch") - samples.at(row, "x_true")
+    return samples.at(row, "E") - (samples.complete ? before * way : 0)
+  }
+
   // The loop to shade: the last contact that ended, or the last cycle of x where nothing can be touched.
   latest() {
     if (this.touches) return this.closed[this.closed.length - 1]
     const cycle = this.samples.count > 2 ? lastCycle(this.samples, "x_true", WINDOW) : undefined
-    return cycle && { from: cycle[0], to: cycle[1], energy: this.samples.at(cycle[1], "E") - this.samples.at(cycle[0], "E") }
+    return cycle && { from: cycle[0], to: cycle[1], energy: this.energyAt(cycle[1]) - this.energyAt(cycle[0]) }
   }
 
   draw(now, theme) {
@@ -72,7 +89,7 @@ class Loop {
       this.path(this.shown.from, this.shown.to)
       context.closePath()
       context.fillStyle = this.shown.energy > 0 ? theme.given : theme.taken
-      context.fill()
+      if (this.samples.complete) context.fill() // else the area is not the energy
       context.strokeStyle = theme.ink
       context.lineWidth = 1.4
       context.stroke()
@@ -87,7 +104,7 @@ class Loop {
   reach(from) {
     let [low, high, least, most] = [Infinity, -Infinity, 0, 0]
     for (let row = from; row < this.samples.count; row++) {
-      const [x, F] = [1000 * this.samples.at(row, "x_true"), this.samples.at(row, "F_applied")]
+      const [x, F] = [1000 * this.samples.at(row, "x_switch"), this.samples.at(row, "F_applied")]
       low = Math.min(low, x)
       high = Math.max(high, x)
       least = Math.min(least, F)
@@ -108,15 +125,17 @@ class Loop {
     return ROOM.top + ((this.height - ROOM.top - ROOM.bottom) * (high - newtons)) / (high - low)
   }
 
-  // Trace the force over the position: held from sample to sample, where every sample is there.
+  // Trace the force over the position where it began to act: held until the next, where every sample is there.
   path(from, to) {
     const { samples, context } = this
     context.beginPath()
     let before = 0
     for (let row = from; row <= to; row++) {
-      const [x, y] = [this.x(samples.at(row, "x_true")), this.y(samples.at(row, "F_applied"))]
-      if (this.held && row > from) context.lineTo(x, before)
-      context.lineTo(x, y)
+      const [x, y] = [this.x(samples.at(row, "x_switch")), this.y(samples.at(row, "F_applied"))]
+      const joins = row > from && samples.follows(row)
+      if (joins && samples.complete) context.lineTo(x, before)
+      if (joins) context.lineTo(x, y)
+      else context.moveTo(x, y)
       before = y
     }
   }
@@ -124,7 +143,7 @@ class Loop {
   drawPoint(theme) {
     const context = this.context
     context.beginPath()
-    context.arc(this.x(this.samples.last("x_true")), this.y(this.samples.last("F_applied")), 3.5, 0, 7)
+    context.arc(this.x(this.samples.last("x_switch")), this.y(this.samples.last("F_applied")), 3.5, 0, 7)
     context.fillStyle = theme.ink
     context.fill()
   }
@@ -172,8 +191,11 @@ class Loop {
     if (!this.shown) return [`No ${who} yet`, this.touches ? "Push in, and come out again." : "Move to and fro."]
     const several = this.many > 2
     const energy = 1000 * (several ? this.mean : this.shown.energy)
-    const much = `${energy < 0 ? "−" : "+"}${shown(Math.abs(energy))} mJ`
-    const head = several ? `${much} per contact (${this.many} in 1 s)` : `${much} in the last ${who}`
-    return [head, energy < 0 ? "more taken than given back" : "more given back than taken"]
+    const none = Math.abs(energy) < 0.005
+    const much = `${none ? "" : energy < 0 ? "−" : "+"}${shown(Math.abs(energy))} mJ`
+    const head = several ? `${much} per contact (${this.many} in 1 s${this.speed === 1 ? "" : " of scene time"})` : `${much} in the last ${who}`
+    if (this.board && this.samples.last("t") - this.gapAt < WINDOW) return [head, `samples are missing: no ${who} is counted across a gap`]
+    const means = none ? "as much given back as taken" : energy < 0 ? "more taken than given back" : "more given back than taken"
+    return [head, means + (this.shown.long ? "; too long to draw" : this.samples.complete ? "" : "; not drawn to scale")]
   }
 }

@@ -186,7 +186,9 @@ function tidy(value) {
   return String(Number(value.toPrecision(6)))
 }
 
+// A number for who reads it as it changes.
 function shown(value) {
+  if (Number.isNaN(value)) return "–"
   const size = Math.abs(value)
   return value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2).replace(/^-0.00$/, "0.00")
 }

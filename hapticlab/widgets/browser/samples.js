@@ -17,9 +17,12 @@ function between(frame, next, part) {
 
 const KEPT = 8192 // rows: 4 s at 2 kHz
 
+const ROUNDED = 2 ** -22 // of a time: float32 is so coarse
+
 // A ring of the newest rows. ``at(k, name)`` is a value of row k, counted from the beginning; rows from ``oldest`` on are there.
 class Samples {
   constructor(columns) {
+    this.T = this.apart = Infinity // [s] from sample to sample, and from row to row
     this.width = columns.length
     this.column = Object.fromEntries(columns.map((name, k) => [name, k]))
     this.data = new Float32Array(KEPT * this.width)
@@ -45,6 +48,19 @@ class Samples {
     return this.data[(row % KEPT) * this.width + this.column[name]]
   }
 
+  // Every sample has its row.
+  get complete() {
+    return this.apart < 1.5 * this.T
+  }
+
+  // Whether a row comes next after the row before it: nothing is missing between them.
+  follows(row) {
+    if (row <= this.oldest) return false
+    const t = this.at(row, "t")
+    const step = t - this.at(row - 1, "t")
+    return step >= 0 && step < 1.5 * this.apart + ROUNDED * t
+  }
+
   // The newest value of a column; NaN before the first.
   last(name) {
     return this.count ? this.at(this.count - 1, name) : NaN
@@ -62,9 +78,12 @@ class Samples {
   }
 }
 
-// The last two rows before which a column rises through its mean over the newest seconds; undefined where it does not.
+// The last two rows before which a column rises through its mean over the newest seconds
+// since a gap; undefined where it does not.
 function lastCycle(samples, name, seconds) {
-  const from = samples.since(samples.last("t") - seconds)
+  const since = samples.since(samples.last("t") - seconds)
+  let from = samples.count - 1
+  while (from > since && samples.follows(from)) from--
   let sum = 0
   for (let k = from; k < samples.count; k++) sum += samples.at(k, name)
   const mean = sum / (samples.count - from)

@@ -61,6 +61,8 @@ class Slider {
     if (!this.edited || this.off) return
     const value = number(this.entry.value)
     const stays = `${this.name} stays at ${this.withUnit(this.shown)}`
+    const read = meanings(this.entry.value)
+    if (read) return this.say(`“${this.entry.value}” could be ${read.join(" or ")}: type one of these; ${stays}`, true)
     if (Number.isNaN(value)) return this.say(`“${this.entry.value}” is not a number; ${stays}`, true)
     const most = ABSURD * Math.max(Math.abs(this.low), Math.abs(this.high))
     if (Math.abs(value) > most) return this.say(`${this.withUnit(value)} is more than ${ABSURD} times the end of the slider; ${stays}`, true)
@@ -130,9 +132,15 @@ class Slider {
   }
 }
 
-// What a person typed as a number, with a decimal point or comma; NaN where it is none, or could be two: "1,000".
+// What a person typed as a number, with a decimal point or comma; NaN where it is none, or could be two.
 function number(typed) {
   const text = typed.trim()
-  if (!/^[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?$/i.test(text) || /^[+-]?[1-9]\d{0,2},\d{3}$/.test(text)) return NaN
+  if (!/^[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?$/i.test(text) || meanings(text)) return NaN
   return Number(text.replace(",", "."))
+}
+
+// The two numbers that "1,000" could be, 1 and 1000; null where what was typed has one meaning at most.
+function meanings(typed) {
+  const text = typed.trim()
+  return /^[+-]?[1-9]\d{0,2},\d{3}$/.test(text) ? [".", ""].map((mark) => Number(text.replace(",", mark))) : null
 }

@@ -81,9 +81,8 @@ class Voice {
 
 // The voice of a live view: silent unless it is asked for, and while nothing moves or nobody sees it.
 class Sound {
-  constructor(samples, apart) {
+  constructor(samples) {
     this.samples = samples
-    this.apart = apart // [s] from row to row
     this.on = false
     this.heard = false
   }
@@ -109,7 +108,8 @@ class Sound {
 
   // Play the rows that came last.
   play(count, speed) {
-    const { samples, apart } = this
+    const { samples } = this
+    const { apart } = samples
     if (!this.heard || !count || this.voice.context.state !== "running") return
     const from = samples.count - count
     this.voice.feed(Array.from({ length: count }, (_, k) => samples.at(from + k, "F_applied")), apart, speed)

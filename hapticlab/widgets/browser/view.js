@@ -20,12 +20,13 @@ class View {
     this.id = `hl-${Math.floor(Math.random() * 2 ** 48)}`
     this.playback = new Playback()
     this.samples = new Samples(this.about.columns)
+    Object.assign(this.samples, { T: this.about.T, apart: this.about.apart })
     this.flags = {}
     this.words = "" // of the source, on what goes on
     this.silent = true // no word from the source, now
     this.shape = []
     this.cleanups = []
-    this.sound = new Sound(this.samples, this.about.apart)
+    this.sound = new Sound(this.samples)
     this.build(el)
     this.picture = new Picture(this.stage, this.about)
     this.traces = new Traces(this.graph, this.about, this.samples)
@@ -122,11 +123,12 @@ class View {
   }
 
   shortcut(event) {
+    if (this.about.keys === false) return
     if (this.controls.key(event, this.flags.held)) return event.preventDefault()
     const plain = !event.ctrlKey && !event.altKey && !event.metaKey && event.target.type !== "text"
     if (!plain || event.key.toLowerCase() !== "d") return
     event.preventDefault()
-    this.spoken.answer(details(this))
+    if (!event.repeat) this.spoken.answer(details(this))
   }
 
   // --- who sees it
@@ -194,11 +196,13 @@ class View {
   showFlags(flags) {
     this.flags = flags
     this.controls.show(flags, { silent: this.silent, zoomed: this.traces?.zoomed, sounds: this.sound.on })
-    for (const slider of this.sliders) slider.switchOff(this.silent)
+    for (const each of [...this.sliders, this.hand]) each?.switchOff(this.silent)
     this.root.classList.toggle("hl-recording", Boolean(flags.recording))
     this.root.classList.toggle("hl-silent", this.silent)
     this.hush()
+    if (flags.T) Object.assign(this.samples, { T: flags.T, apart: flags.apart }) // a record that is replayed may have its own
     if (!this.traces || flags.speed === undefined || flags.speed === this.traces.speed) return
+    if (this.loop) this.loop.speed = flags.speed
     this.traces.speed = flags.speed
     this.traces.rebuild()
   }

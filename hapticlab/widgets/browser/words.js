@@ -57,13 +57,13 @@ function pushes(force, [x, y]) {
 }
 
 // What a person could do now.
-function hint({ about, flags, silent, touched, samples, words }) {
+function hint({ about, flags, silent, touched, samples }) {
   if (silent) return ""
   if (flags.replaying) return "A recording is played back. Press Y to end it."
   if (about.kind === "board") return flags.running ? "Move the handle slowly at first." : "Hold the handle, then press Start motor (P)."
   if (!flags.running) return "Press Run (P) to let time pass, or A to start again."
   if (!flags.held) return "The handle is free. Press L, or drag it, to take it again."
-  if (/hatter/.test(words)) return "M slows time down, Z enlarges the last 0.2 s, U lets you hear it."
+  if (flags.vibrates) return "M slows time down, Z enlarges the last 0.2 s, U lets you hear it."
   if (!touched) return "Drag the handle, or use the arrow keys."
   if (samples.last("contact") === 1) return "Come out again: the shaded loop is the energy of the contact."
   return about.touches ? "Push until you touch something." : "L releases the handle. A starts again."

@@ -149,3 +149,8 @@ def test_what_cannot_be_compared_is_refused(paddle):
         hl.people.compare_blind(paddle, TASK, done)
     with pytest.raises(hl.errors.AnalysisError, match="needs duration"):
         hl.people.compare_blind(paddle, TASK, duration=0.01)
+
+
+def test_of_the_live_view_in_a_comparison_no_button_has_a_key(paddle):
+    _, view = Page(paddle).blind._front().children
+    assert view.about["keys"] is False

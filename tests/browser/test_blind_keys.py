@@ -1,0 +1,39 @@
+"""The keys of a blind comparison, in a page of its own: no notebook, no kernel."""
+
+import pytest
+
+from hapticlab.widgets.browser_view import BROWSER
+
+# Notes what is said but that the page is there, as [what, value].
+OPEN = """() => {
+  window.said = []
+  const state = { trial: 1, answered: "", done: false, limited: false }
+  const about = { question: "Which?", board: false, duration: 0.3, pause: 0.2 }
+  const model = {
+    get: (name) => ({ about, state })[name], on() {},
+    send: (content, callbacks, [data]) => {
+      const [what, value] = new Float64Array(data)
+      if (what !== SAYS.alive) said.push([what, value])
+    },
+  }
+  render({ model, el: document.querySelector(".hl-blind div") })
+}"""
+
+
+@pytest.mark.wide
+def test_space_leads_through_a_trial_and_presses_the_button_that_has_the_focus(browser):
+    page = browser.new_page()
+    page.clock.install(time=0)
+    page.set_content('<div class="hl-blind"><div></div><canvas class="hl-stage" tabindex="0"></canvas></div>')
+    source = (BROWSER / "blind.js").read_text("utf-8")
+    page.add_script_tag(content=source.replace("export default { render }", ""))
+    page.evaluate(OPEN)
+    page.clock.run_for(500)  # until it listens
+    page.evaluate("document.querySelector('canvas').focus()")
+    page.keyboard.press("Space")
+    page.clock.run_for(1000)
+    assert page.evaluate("said") == [[0, 0], [1, 0], [0, 1], [1, 0]]  # both were shown and hidden
+    page.get_by_role("button", name="The second 2").focus()
+    page.keyboard.press("Space")
+    assert page.evaluate("said.at(-1)") == [2, 1]
+    page.close()
