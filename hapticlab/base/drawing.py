@@ -168,7 +168,9 @@ def svg(figure):
     """Return a figure as an SVG without a background, for the inside of a page; its letters are outlines."""
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
-    drawn = re.sub(r"<metadata>.*?</metadata>", "", buffer.getvalue(), flags=re.S)
+    # a style inside of an SVG is one of the whole page: every other drawing there would get these joins
+    drawn = re.sub("<metadata>.*?</metadata>|<style.*?</style>", "", buffer.getvalue(), flags=re.S)
+    drawn = drawn.replace("<g ", '<g stroke-linejoin="round" stroke-linecap="butt" ', 1)
     return drawn[drawn.index("<svg") :]
 
 

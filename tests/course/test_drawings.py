@@ -18,6 +18,8 @@ def test_a_page_shows_a_drawing_in_its_own_colour_and_with_words(name):
     figure = ElementTree.fromstring(shown["text/html"])
     image = figure[0]
     assert image.tag == "svg"
+    assert "<style" not in shown["text/html"], "a style in it is one of the whole notebook"
+    assert {part.get("stroke-linejoin") for part in image.iter("g")} == {"round", None}, "the joins that the style gave"
     assert image.get("role") == "img" and image.get("aria-label") == drawn.alt == about["image/png"]["alt"]
     assert drawn.title in "".join(figure.itertext()) and drawn.alt in shown["text/plain"]
     colours = set(re.findall(r"#[0-9a-f]{6}", shown["text/html"]))
