@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from ..errors import AnalysisError
-from .arguments import choice
-from .drawing import FRAME, house_style, new_figure, plain_log, style_of
+from .arguments import choice, number
+from .drawing import FRAME, house_style, new_figure, plain_log, style_of, typeset
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,6 +27,8 @@ HOW, LOG = ("line", "points", "both"), ("", "x", "y", "xy")
 POINTS = "os^Dvp"
 #: letters of a legend that fit inside a figure, and of a name in a legend of three columns
 INSIDE, WIDE = 90, 24
+#: of a figure [inch]
+TALLEST = 50
 SHAPE = '{"label": (xs, ys)}, {"label": (xs, ys, "points")} or {"label": (xs, ys, "points", half_widths)}'
 GUIDE = {"color": "#4d4d4d", "linewidth": 1.2, "linestyle": (0, (1, 1.5))}
 
@@ -37,19 +39,25 @@ def draw_curves(curves: Mapping[str, Curve] | Mapping[str, Mapping[str, Curve]],
                 height: float | None = None, alt: str = "") -> Figure:  # fmt: skip
     """Draw curves over common axes, as :func:`hapticlab.plot` describes; a mapping of mappings gives a panel to each."""
     choice("log", log, LOG, need='"x", "y", "xy" or ""')
+    if height is not None:
+        height = number("height", height, "", "a figure", above=0, most=TALLEST, what="height [inch]")
+    limits = {f"{side}lim": _ends(f"{side}lim", ends) for side, ends in (("x", xlim), ("y", ylim)) if ends is not None}
+    marks = [(side, *mark) for side, given in (("x", at_x), ("y", at_y)) for mark in _marks(f"at_{side}", given)]
     panels = _panels(curves)
+    labels = [label for drawn in panels.values() for label in drawn]
+    for words in (xlabel, ylabel, title, *panels, *labels, *(words for _, words, _ in marks)):
+        typeset(words)
     handles: dict[str, Any] = {}
     with house_style():
         figure = new_figure(height=height or (3.6 if len(panels) == 1 else 0.8 + 1.3 * len(panels)))
         rows = figure.subplots(len(panels), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         for axes, (name, drawn) in zip(rows, panels.items(), strict=True):
-            for number, (label, curve) in enumerate(drawn.items()):
-                handles.setdefault(label, _draw(axes, number, str(label) or ylabel, _checked(label, curve)))
-            for side, marks in (("x", at_x), ("y", at_y)):
-                for words, place in (marks or {}).items():
-                    _mark(axes, side, words, place)
+            for nth, (label, curve) in enumerate(drawn.items()):
+                handles.setdefault(label, _draw(axes, nth, label or ylabel, _checked(label, curve)))
+            for mark in marks:
+                _mark(axes, *mark)
             axes.set_title(name, loc="left", fontsize="small")
-            axes.set(**{f"{side}lim": ends for side, ends in (("x", xlim), ("y", ylim)) if ends})
+            axes.set(**limits)
         for side in log:
             plain_log(rows[0], side)
         rows[-1].set_xlabel(xlabel)
@@ -68,7 +76,23 @@ def _panels(curves):
     nested = [isinstance(one, Mapping) for one in curves.values()]
     if any(nested) and not all(nested):
         raise AnalysisError("a plot of curves beside panels; give every curve a panel, or none")
-    return {str(name): one for name, one in curves.items()} if all(nested) else {"": curves}
+    panels = curves if all(nested) else {"": curves}
+    return {str(name): {str(label): curve for label, curve in one.items()} for name, one in panels.items()}
+
+
+def _marks(name, given):
+    """Return pairs of words and a place, or a range, on an axis."""
+    if not isinstance(given, Mapping | None):
+        raise AnalysisError(f"{name} = {given!r:.60}; needs words and their place on the axis: {name}={{'limit': 200}}")
+    places = {str(words): place for words, place in (given or {}).items()}
+    return [(words, (_ends if np.ndim(place) else number)(f"{name}[{words!r}]", place)) for words, place in places.items()]
+
+
+def _ends(name, given):
+    """Return the two ends of a range."""
+    if np.shape(given) != (2,):
+        raise AnalysisError(f"{name} = {given!r:.60}; needs two numbers, (low, high)")
+    return tuple(number(f"{side} end of {name}", end, what="end") for side, end in zip(("low", "high"), given, strict=True))
 
 
 def _checked(label, curve):
@@ -85,15 +109,17 @@ def _checked(label, curve):
     if x.ndim != 1 or any(part.shape != x.shape for part in numbers):
         shapes = " and ".join(str(part.shape) for part in (x, *numbers))
         raise AnalysisError(f"curve {label!r} has shapes {shapes}; needs one list of numbers each, all equally long")
+    if len(numbers) > 1 and (numbers[1] < 0).any():
+        raise AnalysisError(f"curve {label!r} has a half width of {numbers[1].min():g}; half widths need to be 0 or more")
     return x, numbers[0], how, numbers[1] if len(numbers) > 1 else None
 
 
-def _draw(axes, number, label, curve):
+def _draw(axes, nth, label, curve):
     """Draw one curve, with an interval around each point, and return its line."""
     x, y, how, half = curve
-    style = style_of(number) | {"label": label.partition(" [")[0] or "_"}
+    style = style_of(nth) | {"label": label.partition(" [")[0] or "_"}
     if how != "line":
-        style |= {"marker": POINTS[number % len(POINTS)], "markerfacecolor": "white" if len(x) > 1 else style["color"]}
+        style |= {"marker": POINTS[nth % len(POINTS)], "markerfacecolor": "white" if len(x) > 1 else style["color"]}
     if how == "points":
         style["linestyle"] = "none"
     (line,) = axes.plot(x, y, **style)
@@ -108,10 +134,10 @@ def _mark(axes, side, words, place):
     """Draw a dotted line across at a place, or a band over a range, with words beside it."""
     upright = side == "x"
     if np.ndim(place):
-        low, high = (float(end) for end in place)
+        low, high = place
         (axes.axvspan if upright else axes.axhspan)(low, high, color="#8a8a8a", alpha=0.25, linewidth=0, zorder=0)
     else:
-        low = float(place)
+        low = place
         (axes.axvline if upright else axes.axhline)(low, label=words, **GUIDE)
     beside = {"fontsize": "small", "color": "#3d3d3d", "textcoords": "offset points", "annotation_clip": True}
     if upright:

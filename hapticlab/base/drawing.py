@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import AnalysisError
+
 #: a light and a dark colour, told apart in grey print too
 WARM, COLD = "#cc5a1a", "#1a4b84"
 #: class of a picture that keeps its own light ground, and the rule that turns light and dark where a page is dark: hues stay.
@@ -155,6 +157,22 @@ def axis_label(name, unit):
     """The factor of SI values on an axis, and its label with the unit it shows."""
     scale, shown = SHOWN.get(unit, (1.0, unit))
     return scale, f"{NAMES.get(name, name)} [{shown}]"
+
+
+def typeset(words):
+    """Refuse words with a formula, "$...$", that cannot be typeset."""
+    from matplotlib.cbook import is_math_text
+    from matplotlib.mathtext import MathTextParser
+
+    if isinstance(words, str) and is_math_text(words):
+        try:
+            MathTextParser("path").parse(words)
+        except ValueError as problem:
+            reason = str(problem).strip().splitlines()[-1]
+            raise AnalysisError(
+                f"{words!r} has a formula between dollar signs that matplotlib cannot typeset ({reason}). "
+                "Close its braces, or write plain words"
+            ) from None
 
 
 def png(figure):

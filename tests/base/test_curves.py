@@ -22,6 +22,13 @@ def test_curves_hold_the_numbers_given():
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["pinch", "free"]
 
 
+def test_labels_may_be_numbers():
+    figure = hl.plot({100: (K, K), 200: (K, 2 * K)}, at_x={160: 160})
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["100", "200"]
+    two = hl.plot({1: {100: (K, K)}, 2: {100: (K, -K)}})
+    assert [axes.get_title(loc="left") for axes in two.axes] == ["1", "2"] and figure._repr_png_() and two._repr_png_()
+
+
 def test_points_and_intervals():
     figure = hl.plot({"": (["once", "twice"], [3.0, 5.0], "points", [0.5, 0.1])}, ylabel="beta [1/s]")
     (axes,) = figure.axes
@@ -70,6 +77,16 @@ def test_long_names_stand_below_the_axes():
         ({"a": (K, K)}, {"log": "z"}, "log = 'z'; needs"),
         ({"a": (K, K)}, {"over": "x"}, "plot of curves has no over="),
         ({"a": (K, K), "b": {"c": (K, K)}}, {}, "curves beside panels"),
+        ({"a": (K, K, "points", [1, -2, 3])}, {}, "curve 'a' has a half width of -2; half widths need to be 0 or more"),
+        ({"$x_{$": (K, K)}, {}, r"'\$x_\{\$' has a formula between dollar signs that matplotlib cannot typeset \(.*\). Close"),
+        ({"a": (K, K)}, {"title": r"$\nothing$"}, r"nothing\$' has a formula between .* \(.*Unknown symbol: .nothing"),
+        ({"a": (K, K)}, {"at_x": 3}, r"at_x = 3; needs words and their place on the axis: at_x=\{'limit': 200\}"),
+        ({"a": (K, K)}, {"at_y": {"w": (1,)}}, r"at_y\['w'\] = \(1,\); needs two numbers, \(low, high\)"),
+        ({"a": (K, K)}, {"at_y": {"w": "here"}}, r"at_y\['w'\] = 'here'; needs a finite at_y\['w'\]. Give a number"),
+        ({"a": (K, K)}, {"xlim": 5}, r"xlim = 5; needs two numbers, \(low, high\)"),
+        ({"a": (K, K)}, {"ylim": (0, np.inf)}, "high end of ylim = inf; needs a finite end"),
+        ({"a": (K, K)}, {"height": -1}, r"height = -1; a figure needs height \[inch\] > 0 and <= 50"),
+        ({"a": (K, K)}, {"xlabl": "K"}, "plot of curves has no xlabl=; it takes xlabel=, ylabel=, log=, title=, at_x="),
     ],
 )
 def test_what_is_no_curve_is_refused(given, options, words):

@@ -23,7 +23,8 @@ def frequency(log: Telemetry, name: str = "x", *, begin: float = 0.0) -> float:
     A crossing counts where the oscillation rises from half a standard deviation below the mean to half of one above it, so that
     noise about the mean adds none (O. H. Schmitt, A thermionic trigger, J. Sci. Instrum. 15, 1938). The crossings are
     interpolated between samples; an oscillation faster than a third of the sampling rate may lack some. The mean is that of the
-    part from ``begin`` on, which should hold several cycles about a resting position. :func:`hapticlab.chatter` tells chatter of a wall from decay and from driven motion.
+    part from ``begin`` on, which should hold several cycles about a resting position. :func:`hapticlab.chatter` tells chatter
+    of a wall from decay and from driven motion.
 
     Parameters
     ----------

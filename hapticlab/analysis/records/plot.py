@@ -95,6 +95,9 @@ def plot(shown: Any, /, *names: str, **options: Any) -> Figure:
         raise AnalysisError(f"plot of curves, and {names[0]!r}; names belong to a record. Put a curve's name before it, as a key")
     if "over" in options:
         raise AnalysisError("plot of curves has no over=; a curve brings its own xs. Say what they are: xlabel='...'")
+    known = draw_curves.__kwdefaults__ or {}
+    if wrong := [option for option in options if option not in known]:
+        raise AnalysisError(f"plot of curves has no {wrong[0]}=; it takes {', '.join(f'{option}=' for option in known)}")
     return draw_curves(shown, **options)
 
 
@@ -138,7 +141,7 @@ def _draw_quantity(axes, log, name, across, *, held):
 def _shade_force(figure, rows, log):
     """Shade the periods with a force, where there are others too: a wall's force is 0 outside."""
     acts = log.F != 0
-    if acts.mean() > 0.99 or not acts.any():  # also where a body's first sample alone has none
+    if not acts.any() or acts.mean() > 0.99:  # also where a body's first sample alone has none
         return
     for axes in rows:
         shade = {"color": "#8a8a8a", "alpha": 0.25, "linewidth": 0, "zorder": 0, "transform": axes.get_xaxis_transform()}

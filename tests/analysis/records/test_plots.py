@@ -30,6 +30,12 @@ def test_a_force_is_drawn_as_it_is_held():
     assert plot(thinned, "F").axes[0].lines[0].get_drawstyle() == "default"
 
 
+@pytest.mark.filterwarnings("error")
+def test_an_empty_record_is_drawn_without_warnings():
+    none = np.zeros(0)
+    assert len(plot(Telemetry(t=none, x=none, v=none, F=none, T=1e-3)).axes) == 2
+
+
 def swept(**axes):
     units = {"k": "N/m", "T": "s", "b": "N s/m", "B": "N s/m"}
     shape = tuple(len(a) for a in axes.values())
