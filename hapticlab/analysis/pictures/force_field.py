@@ -6,6 +6,7 @@ import sympy as sp
 from ...library.sketch import Sketch
 from ...scene.notation.symbols import n, v, x
 from .plain_formulas import HANDLE, formula, plain_symbols
+from .wall_boundaries import walls_in
 
 #: what is shown [m], and the height of the potential for the scene's own values
 BOX, HIGH = (-0.058, 0.058, -0.0125, 0.0175), 0.011
@@ -56,7 +57,7 @@ class ForceField:
 
 
 def is_field(scene):
-    """Tell whether a force depends on the handle's position alone, and is no spring: a straight line, or lines in cases.
+    """Tell whether a force depends on the handle's position alone, and is neither springs, straight lines in cases, nor walls.
 
     Examples
     --------
@@ -71,6 +72,7 @@ def is_field(scene):
     force = plain_symbols(scene.force)
     if {s.name for s in force.free_symbols} - set(scene.values) - {"x"}:
         return False
+    force = force.xreplace(dict.fromkeys(walls_in(force), sp.S.Zero))
     parts = [force.xreplace(dict.fromkeys(force.atoms(sp.Piecewise), sp.S.Zero))]
     parts += [value for cases in force.atoms(sp.Piecewise) for value, _ in cases.args]
     return any(not sp.expand(part.diff(HANDLE, 2)).is_zero for part in parts)

@@ -4,7 +4,7 @@ import numpy as np
 import sympy as sp
 
 from .plain_formulas import HANDLE
-from .wall_boundaries import depths
+from .wall_boundaries import regions
 
 #: a body that rests on another is found so far above it, by rounding and by the steps of a method [m]
 CLOSE = 1e-6
@@ -13,7 +13,7 @@ CLOSE = 1e-6
 def touching(scene, watched=()):
     """Return a function that says at which samples something is touched, or None where the scene has nothing to touch.
 
-    Touched is what has a boundary: the handle or a body is beyond the boundary, and the force acts. A pendulum, a mass or
+    Touched is what has a boundary: the handle or a body is beyond the boundary, or between all boundaries of a patch, and the force acts. A pendulum, a mass or
     a damper that hangs on the handle has no boundary.
 
     Parameters
@@ -24,7 +24,8 @@ def touching(scene, watched=()):
 
     Returns
     -------
-    callable of (samples, parameters) -> array of float, 1 or 0; or None
+    callable of (samples, parameters) -> array of float, 1 or 0, nan where a name is unknown; or None
+        A parameter that changed is an array in the samples.
 
     Examples
     --------
@@ -35,22 +36,30 @@ def touching(scene, watched=()):
     ([0.0, 1.0, 0.0], None)
     """
     movers = {HANDLE.name, *(name for q in scene.coordinates if (name := type(q).__name__) in watched)}
-    known = movers | set(scene.parameters)
-    found = []
-    for depth in dict.fromkeys(depths(scene)):
+    known = movers | set(scene.parameters) | {"t"}
+
+    def is_told(depth):
         names = {symbol.name for symbol in depth.free_symbols}
-        if names & movers and names <= known:
-            found.append(depth)
+        return bool(names & movers) and names <= known
+
+    found = [told for region in regions(scene) if (told := tuple(filter(is_told, region)))]
     if not found:
         return None
-    symbols = sorted(set().union(*(depth.free_symbols for depth in found)), key=str)
+    symbols = sorted(set().union(*(depth.free_symbols for region in found for depth in region)), key=str)
     names = [symbol.name for symbol in symbols]
     values = sp.lambdify(symbols, found, "numpy")
 
     def touched(samples, parameters):
         known = {**parameters, **samples}
+        if not known.keys() >= set(names):  # a record of another scene
+            return np.full(len(samples["x"]), np.nan)
         with np.errstate(all="ignore"):
-            deepest = np.max(np.broadcast_arrays(samples["x"], *values(*(known[name] for name in names)))[1:], axis=0)
-        return ((deepest >= -CLOSE) & (samples["F"] != 0)).astype(float)
+            inside = [np.all([depth >= -CLOSE for depth in _alike(region, samples["x"])], axis=0)
+                      for region in values(*(known[name] for name in names))]  # fmt: skip
+        return (np.any(inside, axis=0) & (samples["F"] != 0)).astype(float)
 
     return touched
+
+
+def _alike(region, x):
+    return np.broadcast_arrays(x, *region)[1:]

@@ -264,6 +264,22 @@ def test_a_force_field_of_ones_own_is_drawn_as_its_potential():
     assert not any(isinstance(drawing_of(wall), ForceField) for wall in walls)
 
 
+def test_a_wall_that_is_no_spring_is_drawn_as_a_wall_and_a_bump_as_a_track():
+    w, X = hl.parameters("w", units="m", values=0.01), hl.x(n)
+    hard, bump = k * (X - x_o) ** 2 / w, k * w * sp.sin(sp.pi * X / w)
+    for force in (
+        sp.Piecewise((hard, x_o <= X), (0, True)),
+        sp.Piecewise((0, x_o > X), (hard, True)),
+        k * sp.Max(0, X - x_o) ** 2 / w,
+        sp.Piecewise((hard, x_o <= X), (-k * (X + x_o) ** 2 / w, -x_o >= X), (0, True)),
+    ):
+        found = drawn(hl.Scene(force=force))
+        assert "track" not in found
+    assert {one.side for one in drawing_of(hl.Scene(force=force)).walls} == {1, -1}
+    for force in (sp.Piecewise((bump, w > sp.Abs(X)), (0, True)), sp.Piecewise((bump, (w > X) & (-w < X)), (0, True)), bump + hard):
+        assert "track" in drawn(hl.Scene(force=force))
+
+
 @pytest.mark.parametrize(
     ("shape", "core", "radius"),
     [
