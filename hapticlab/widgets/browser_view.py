@@ -102,10 +102,14 @@ class Speaker:
     def say(self, frame):
         """Send a frame; a moving one seldom where a view is behind, and then with the rows of those before."""
         now, self._status = time.perf_counter(), frame.status or self._status
+        first = frame.rows[0, 0] if len(frame.rows) else np.float32(frame.time)
+        if self._waiting and first < self._waiting[-1][-1, 0]:
+            self._waiting = []  # another run, or a replay: no view needs the end of the one before
         if len(frame.rows):
             self._waiting.append(frame.rows)
             if now < self._sent + 1 / SELDOM and self._is_behind(now):
                 return
+        if self._waiting:
             frame, self._waiting = replace(frame, rows=np.concatenate(self._waiting)), []
         self._sent = now
         shape, points = take_apart(frame.picture)

@@ -10,6 +10,17 @@ COLUMNS = ("t", "x", "F", "E", "intent", "contact", "x_true", "F_applied", "x_sw
 THINNED = 5e-4
 
 
+def columns(watched):
+    """Return the names of the columns of a scene's rows; a watched channel is told from one that every scene has.
+
+    Examples
+    --------
+    >>> columns(["theta", "E"])[-2:]
+    ['theta', 'watched E']
+    """
+    return [*COLUMNS, *(f"watched {name}" if name in COLUMNS else name for name in watched)]
+
+
 @dataclass(frozen=True)
 class Frame:
     """What happened since the frame before, and what to show now.

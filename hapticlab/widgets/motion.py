@@ -80,6 +80,7 @@ class Motion:
         waits = self._recorder is not None and not self._recorder.samples
         self.stop_recording()
         self.source.stop()
+        self.running = False  # a start may be refused
         self.traces, self._noticed, self.missed = Traces(self.source.period, self.watched), {}, False
         self.source.start()
         self._at = self.source.place
@@ -101,6 +102,10 @@ class Motion:
     def pause(self):
         """Stand still; a board's motor goes off, and its recording ends. So does a replay."""
         self.replay(None)
+        self.rest()
+
+    def rest(self):
+        """Stand still; a board's motor goes off, and its recording ends. A replay waits for :meth:`wake`."""
         self.running = False
         try:
             self.source.stop()
@@ -111,6 +116,8 @@ class Motion:
     def wake(self):
         """Count time from now on: what passed before is not made up for."""
         self.pace.start(self.clock())
+        if self._replay is not None:
+            self._replay.go_on(self.clock())
 
     def pass_at(self, speed):
         """Let scene time pass at another speed over the clock's from now on."""
@@ -170,10 +177,8 @@ class Motion:
             samples = self._lead(self.pace.due(now), wanted) if self.running else None
         if samples is None or not len(samples["t"]):
             return None
-        if self._touching is not None:
-            samples = {**samples, "contact": self._touching(samples, self._parameters)}
         self._last = {name: float(column[-1]) for name, column in samples.items()}
-        return self.traces.add(samples)
+        return self.traces.add(samples, None if self._touching is None else self._touching(samples, self._parameters))
 
     @property
     def _parameters(self):

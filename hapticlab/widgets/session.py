@@ -168,7 +168,7 @@ class Session:
         """Close, and wait until all stands still."""
         self.close()
         with self._lock:
-            self.stage.rest()
+            self.stage.end()
 
     # --- the thread
 
@@ -185,7 +185,7 @@ class Session:
                 due, led = self._wait(due, led)
         finally:
             with self._lock:
-                self.stage.rest()
+                (self.stage.end if self._closed.is_set() else self.stage.rest)()
             with self._door:
                 self._thread = None if self._thread is threading.current_thread() else self._thread
         if self._closed.is_set():
@@ -213,7 +213,7 @@ class Session:
             except Exception as problem:  # a fault of the view's own: it ends, in words, with the motor off
                 self._end = f"This view has ended: {type(problem).__name__}: {problem}. Run its cell again."
                 self.close()
-                self.stage.rest()
+                self.stage.end()
                 frame = self.stage.last_frame(self._end)
             looks = bool(self._views)
         if frame is not None:

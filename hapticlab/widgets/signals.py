@@ -2,6 +2,7 @@
 
 from sympy import Symbol, latex
 
+from .frame import COLUMNS, columns
 from .plain.plain_letters import plain
 from .spans import shown_unit
 
@@ -29,13 +30,14 @@ def signals(scene, hidden=frozenset()):
     >>> [(one["label"], one["unit_shown"]) for one in signals(hl.library.cart_pole())]
     [('x', 'mm'), ('F', 'N'), ('E drawn', 'mJ'), ('z', 'mm'), ('θ', 'rad')]
     """
-    units = UNITS | scene.watch_units
+    own = [(name, UNITS[name], LABELS[name]) for name in UNITS if name not in hidden]
+    watched = [name for name in scene.watch if name not in hidden]
+    labels = [plain(f"${latex(Symbol(name))}$") for name in watched]
+    units = [scene.watch_units[name] for name in watched]
     found = []
-    for name in (*UNITS, *scene.watch):
-        if name not in hidden:
-            scale, unit = shown_unit(units[name])
-            label = LABELS.get(name) or plain(f"${latex(Symbol(name))}$")
-            found.append({"name": name, "label": label, "unit_shown": unit, "scale": scale})
+    for name, unit, label in (*own, *zip(columns(watched)[len(COLUMNS) :], units, labels, strict=True)):
+        scale, shown = shown_unit(unit)
+        found.append({"name": name, "label": label, "unit_shown": shown, "scale": scale})
     return found
 
 

@@ -2,20 +2,21 @@
 
 import math
 from contextlib import suppress
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 from ..analysis.pictures.touching import touching
 from ..device.board.serial_paddle import is_refusal
 from ..device.live_parameters import named_values
 from ..errors import HapticlabError, PaddleError
+from .description import description
 from .frame import COLUMNS, Frame
 from .motion import Motion
 from .picture import moving_picture
-from .signals import HIDING_FORCE, open_traces, signals
-from .sources import help_words, overview_words, source_of
+from .signals import HIDING_FORCE, signals
+from .sources import source_of
 from .spans import spans
-from .status_words import MISSED, NOTICED, chatter_words, contact_words, late_words
+from .status_words import vibration_words, words_of
 from .traces import rows_apart
 
 #: pictures a second of a scene that rests
@@ -44,16 +45,17 @@ class Stage:
     """
 
     def __init__(self, paddle, scene, *, clock, sliders=None, speed=1.0, picture=None, show_force=True, let_go=False, **options):
-        self._let_go, self.hidden = bool(let_go), frozenset() if show_force else HIDING_FORCE
+        self.let_go, self.hidden = bool(let_go), frozenset() if show_force else HIDING_FORCE
         self.picture = moving_picture(scene, paddle, picture)
         self.scene = replace(scene, watch={**scene.watch, **self.picture.channels})
         self.source = source_of(paddle, self.scene, **options)
         self.spans = spans(self.source.program, sliders)
         self.signals, self._speed = signals(scene, self.hidden), speed
+        self.slow_speed = min(SLOW, speed)
         touched = touching(scene, self.scene.watch)
         self.motion = Motion(self.source, speed, clock, tuple(scene.watch), touched)
         self.touches, self.clock = touched is not None, clock
-        self.awake, self._wants_to_run = False, self.source.kind == "simulated"
+        self.awake, self._wants_to_run, self._goes_on = False, self.source.kind == "simulated", False
         self.stopped = "time stood still" if self._wants_to_run else "the motor went off"
         self.caught = None
         self._note, self._note_until, self._lost, self._vibration = "", -1.0, "", ""
@@ -65,37 +67,8 @@ class Stage:
         return named_values(self.source.program)
 
     def description(self):
-        """Facts that a front end is told once: a dict of what JSON can carry.
-
-        ``title``; ``kind``, "simulated" or "board"; ``parameters``, a list of the fields of a Span and ``value``;
-        ``traces``, a list of {name, label, unit_shown, scale, open}, where shown = scale * value in SI, of the column of
-        that name, and ``open`` where its trace is there from the beginning; ``touches``, whether there is something to be
-        in contact with; ``loop``, whether F over x may be shown; ``x_range``, how far a hand goes, and ``box``, [left,
-        right, bottom, top], of the picture [m]; ``along``, the direction in which the handle moves there; ``let_go``,
-        whether a drag that is released lets go; ``overview`` and ``help``, words on what is seen and on what moves it;
-        ``speed`` and ``slow``, scene time over the clock's, now and in slow motion; ``T`` and ``apart``, between two samples
-        and between two rows of a frame [s]; ``columns``.
-        """
-        box, values = self.picture.box, self.values
-        return {
-            "title": self.source.program.name,
-            "kind": self.source.kind,
-            "parameters": [{**asdict(span), "value": values[span.name]} for span in self.spans],
-            "traces": open_traces(self.signals),
-            "touches": self.touches,
-            "loop": not self.hidden & {"x", "F"},
-            "x_range": list(self.picture.reach),
-            "box": list(box),
-            "along": list(self.picture.along),
-            "let_go": self._let_go,
-            "overview": overview_words(self.source, self.scene, self.picture.along),
-            "help": help_words(self.source),
-            "speed": self.motion.speed,
-            "slow": min(SLOW, self._speed),
-            "T": self.source.period,
-            "apart": rows_apart(self.source.period),
-            "columns": [*COLUMNS, *self.motion.watched],
-        }
+        """Facts that a front end is told once, see :func:`~hapticlab.widgets.description.description`."""
+        return description(self)
 
     # --- what it does
 
@@ -105,14 +78,26 @@ class Stage:
             self.awake = True
             self.source.warm()
             self.motion.wake()  # after it, for compiling took its time
+            self._goes_on = self._wants_to_run
+            self._go_on()
+
+    def _go_on(self):
+        """Run as before nobody looked, once no replay is on view."""
+        if self._goes_on and not self.motion.replaying:
+            self._goes_on = False
             if self._wants_to_run:
                 self.resume()
 
     def rest(self):
-        """Stand still because nobody looks; a simulation goes on when somebody does, a board only after Start."""
+        """Stand still because nobody looks; a simulation or a replay goes on when somebody does, a board only after Start."""
         if self.awake:
             self.awake = False
-            self._halt()
+            self._halt(self.motion.rest)
+
+    def end(self):
+        """Stand still for good."""
+        self.rest()
+        self.guarded(self.motion.replay, None)
 
     def obey(self, said):
         """Do what was said, in its order, as (what, given); of a slider's moves in a row the last counts."""
@@ -148,6 +133,7 @@ class Stage:
         """
         running, recording = self.motion.running, self.motion.recording
         rows = self.guarded(self.motion.advance, wanted)
+        self.guarded(self._go_on)
         if running and not self.motion.running:
             self.look()
         low, high = self.picture.reach
@@ -167,7 +153,7 @@ class Stage:
         if self.source.kind == "board" or not self.motion.running or self.motion.replaying:
             return
         if max(low - x, x - high) > high - low:
-            self._halt()
+            self._halt(self.motion.pause)
             self._wants_to_run = False
             self._lost = f"The loop is unstable: the handle left the picture (x = {1e3 * x:.3g} mm). Press Start again"
 
@@ -179,13 +165,13 @@ class Stage:
             kind = "" if isinstance(problem, HapticlabError) else f"{type(problem).__name__}: "
             self.tell(f"{kind}{problem}")
             if not is_refusal(problem):
-                self._halt()
+                self._halt(self.motion.pause)
         return None
 
-    def _halt(self):
+    def _halt(self, stop):
         """Stand still whatever happens: what stopping raises is told, and a board that hears nothing stops by itself."""
         try:
-            self.motion.pause()
+            stop()
         except Exception as problem:
             self.tell(f"{type(problem).__name__}: {problem}")
 
@@ -209,8 +195,8 @@ class Stage:
         """Begin or end slow motion."""
         if self.source.kind == "board":
             raise PaddleError("A board runs in real time, so slow motion needs a SimulatedPaddle")
-        usual, slow = self._speed if self._speed > SLOW else 1.0, min(SLOW, self._speed)
-        self.motion.pass_at(slow if self.motion.speed != slow else usual)
+        usual = self._speed if self._speed > SLOW else 1.0
+        self.motion.pass_at(self.slow_speed if self.motion.speed != self.slow_speed else usual)
 
     def resume(self):
         if self._lost:
@@ -257,27 +243,10 @@ class Stage:
 
     def words(self):
         """Return one or two sentences about what goes on."""
-        motion, source, self._vibration = self.motion, self.source, ""
-        board = source.kind == "board"
-        if motion.replaying:
-            said = ["Replaying a record"]
-        elif motion.running:
-            x, F, contact = motion.traces.recent()
-            said = [source.waits or f"{'Motor on' if board else self._pace_words()}{contact_words(contact[-len(x) // 4 :])}"]
-            self._vibration = chatter_words(x, F, source.period)
-            said += [self._vibration, *(NOTICED[name] for name in motion.noticed())]
-            said += ["" if board else late_words(motion.pace.behind(self.clock()))]
-            said += ["" if motion.held else "The handle is let go"]
-        else:
-            said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
-            said += [f"Stopped: {source.fault}" if source.fault else "", self._lost]
-        said += [MISSED if motion.missed else ""]
-        records = "Recording" if motion.running and not (motion.replaying or source.waits) else "Recording waits"
-        said += [records if motion.recording else "", self.note]
-        return " ".join(f"{sentence.rstrip('.')}." for sentence in said if sentence)
-
-    def _pace_words(self):
-        return "Running" if self.motion.speed == 1 else f"Running at {self.motion.speed:g} times real time"
+        motion, source = self.motion, self.source
+        self._vibration = "" if "F" in self.hidden else vibration_words(motion, source)  # it tells how stiff a wall is
+        said = words_of(motion, source, self.clock(), vibration=self._vibration, lost=self._lost)
+        return " ".join(f"{sentence.rstrip('.')}." for sentence in (*said, self.note) if sentence)
 
     def frame(self, rows, wanted):
         """Return the frame that is due, or None: a picture that rests is shown now and then."""

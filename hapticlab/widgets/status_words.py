@@ -73,6 +73,43 @@ def late_words(behind):
     return said if behind < MUCH else f"{said}: too slow for this scene; give time_scale=0.1 or a cheaper method"
 
 
+def vibration_words(motion, source):
+    """Say how the handle vibrates where the scene runs, or nothing."""
+    x, F, _ = motion.traces.recent()
+    return chatter_words(x, F, source.period) if motion.running and not motion.replaying else ""
+
+
+def words_of(motion, source, now, *, vibration="", lost=""):
+    """Return what goes on, a list of sentences, of which some are empty.
+
+    Parameters
+    ----------
+    motion : Motion
+    source : Stepping or Streaming
+    now : float
+        The clock [s].
+    vibration : str
+        What :func:`vibration_words` says.
+    lost : str
+        Why a simulation ended.
+    """
+    board = source.kind == "board"
+    if motion.replaying:
+        said = ["Replaying a record"]
+    elif motion.running:
+        *_, contact = motion.traces.recent()
+        runs = "Motor on" if board else "Running" if motion.speed == 1 else f"Running at {motion.speed:g} times real time"
+        said = [source.waits or f"{runs}{contact_words(contact[-len(contact) // 4 :])}"]
+        said += [vibration, *(NOTICED[name] for name in motion.noticed())]
+        said += ["" if board else late_words(motion.pace.behind(now)), "" if motion.held else "The handle is let go"]
+    else:
+        said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
+        said += [f"Stopped: {source.fault}" if source.fault else "", lost]
+    said += [MISSED if motion.missed else ""]
+    records = "Recording" if motion.running and not (motion.replaying or source.waits) else "Recording waits"
+    return [*said, records if motion.recording else ""]
+
+
 #: flags of a Telemetry, in words
 NOTICED = {
     "saturated": "The motor is at its limit", "gap": "Samples were lost on the link",

@@ -44,19 +44,23 @@ class Traces:
         self._energy, self._last, self._count = 0.0, None, 0
         self._recent, self._length = deque(), 0
 
-    def add(self, samples):
-        """Take samples, a dict of arrays as a Telemetry names them; return their rows, thinned, as a Frame has them."""
+    def add(self, samples, contact=None):
+        """Take samples, a dict of arrays as a Telemetry names them; return their rows, thinned, as a Frame has them.
+
+        contact: 1 or 0 of each, or nan; None in a scene where nothing can be touched.
+        """
         x, F = samples["x"], samples["F"]
-        energy = self._drawn(samples)
+        contact = np.full(len(x), np.nan) if contact is None else contact
         first = -self._count % self._step
-        known = {"x_true": x, "F_applied": F, "x_switch": samples.get("x_true", x), **samples, "E": energy}
-        names = (*COLUMNS, *self._watched)
-        rows = np.full((len(range(first, len(x), self._step)), len(names)), np.nan, np.float32)
-        for k, column in enumerate(known.get(name) for name in names):
+        known = {"x_true": x, "F_applied": F, "x_switch": samples.get("x_true", x), **samples}
+        known |= {"E": self._drawn(samples), "contact": contact}
+        found = [*map(known.get, COLUMNS), *map(samples.get, self._watched)]
+        rows = np.full((len(range(first, len(x), self._step)), len(found)), np.nan, np.float32)
+        for k, column in enumerate(found):
             if column is not None:
                 rows[:, k] = np.clip(column[first :: self._step], -LARGEST, LARGEST)
         self._count += len(x)
-        self._keep(x, F, samples.get("contact", np.full(len(x), np.nan)))
+        self._keep(x, F, contact)
         return rows
 
     def recent(self):

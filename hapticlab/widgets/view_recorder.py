@@ -57,7 +57,11 @@ class Replay:
         self.parameters = dict(log.parameters)
         self._columns = {name: np.asarray(getattr(log, name), float) for name in log.columns}
         self._columns.setdefault("intent", np.full(len(log), np.nan))
-        self._speed, self._begun, self._shown = speed, now, 0
+        for since, name, value in ((t, name, value) for t, numbers in log.changes for name, value in numbers.items()):
+            if name not in log.columns:  # a parameter that was changed is a column
+                column = self._columns.setdefault(name, np.full(len(log), self.parameters.get(name, np.nan)))
+                column[log.t >= since - log.T / 2] = value
+        self._speed, self._begun, self._seen, self._shown = speed, now, now, 0
 
     @property
     def done(self):
@@ -68,9 +72,14 @@ class Replay:
         self._begun = now - (now - self._begun) * self._speed / speed
         self._speed = speed
 
+    def go_on(self, now):
+        """Play on from here: what passed since the last look is not made up for."""
+        self._begun += now - self._seen
+        self._seen = now
+
     def take(self, now):
-        """Return the samples since the last look, or None."""
-        t = self._columns["t"]
+        """Return the samples since the last look, with parameters that were changed meanwhile; or None."""
+        t, self._seen = self._columns["t"], now
         until = int(np.searchsorted(t - t[0], (now - self._begun) * self._speed, side="right"))
         if until <= self._shown:
             return None

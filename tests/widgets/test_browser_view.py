@@ -98,6 +98,41 @@ def test_a_page_that_is_far_behind_gets_fewer_frames_and_no_fewer_rows(monkeypat
     assert sum(int(struct.unpack_from("<3d", data)[2]) for _, data in sent) == 301 * 17
 
 
+def run(begin, count=16):
+    """A frame of a run of samples 1 ms apart; of none, a frame at rest then."""
+    t = begin + np.arange(count) * 1e-3
+    return frame(time=float(t[-1]) if count else begin, rows=np.repeat(t[:, None], 8, 1).astype(np.float32))
+
+
+@pytest.mark.parametrize("follow", [[], [0.0, 0.016], [2.0]])
+@pytest.mark.parametrize("rest", [True, False])
+def test_what_waits_comes_with_the_next_frame_and_never_with_another_run(monkeypatch, follow, rest):
+    now, sent = [50.0], []
+    monkeypatch.setattr("hapticlab.widgets.browser_view.time.perf_counter", lambda: now[0])
+    speaker = Speaker(lambda content, buffers: sent.append(buffers[0]))
+    speaker.say(run(0.0))
+    speaker._sent = now[0] = 60.0
+    speaker.heard(message("alive", 1.0, 5.0) + struct.pack("<d", 50.0))  # the page is 10 s behind
+    for k in range(10):
+        now[0] += 0.01
+        speaker.say(run(10.0 + 0.016 * k))
+    assert len(sent) == 1
+    if rest:  # the scene is paused
+        speaker.say(run(10.16, 0))
+    now[0] += 1.0
+    for begin in follow:
+        speaker.say(run(begin))
+        now[0] += 1.0
+    times = []
+    for data in sent[1:]:
+        numbers = np.frombuffer(data, "<f4", offset=24)[: 8 * int(struct.unpack_from("<3d", data)[2])].reshape(-1, 8)
+        times.append(numbers[:, 0])
+        assert (np.diff(times[-1]) > 0).all()
+    waited = 10.0 + np.arange(160) * 1e-3 if rest else []
+    expected = np.concatenate([waited, *(begin + np.arange(16) * 1e-3 for begin in follow)])
+    np.testing.assert_allclose(np.concatenate([[], *times]), expected, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("said", "told"),
     [

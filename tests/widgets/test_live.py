@@ -328,6 +328,29 @@ def test_a_frame_says_how_far_apart_the_samples_of_a_replayed_record_are():
     assert stage.flags["T"] == 2e-4 and np.allclose(np.diff(rows[:, 0]), stage.flags["apart"], atol=1e-6)
 
 
+def test_a_watched_channel_may_have_the_name_of_a_column_of_the_view():
+    g = hl.parameters("g", units="1", values=2)
+    k = hl.parameters("k", units="N/m", values=10)
+    x = hl.x(hl.n)
+    scene = hl.Scene(force=hl.when(x > 0, k * x, 0), watch={"E": 3 * g * x, "contact": g * x})
+    stage = Stage(scene=scene)
+    stage.session.press("record")
+    stage.open()
+    stage.go(0.5, pointer=lead)
+    about, log, rows = stage.session.description(), stage.session.recorded(), stage.rows
+    at = np.round(rows[:, 0] / T).astype(int)
+    columns = dict(zip(about["columns"], rows.T, strict=True))  # no name twice
+    assert len(columns) == rows.shape[1] == 11
+    assert set(columns["contact"]) == {0.0, 1.0} and np.array_equal(columns["contact"] == 1, columns["F"] > 0)
+    np.testing.assert_allclose(columns["E"], -hl.energy(log).W[at], atol=1e-9)
+    np.testing.assert_allclose(log.E, 6 * log.x)
+    shown = {trace["name"]: (trace["label"], trace["unit_shown"]) for trace in about["traces"]}
+    watched = [name for name in shown if name not in ("x", "F", "E")]
+    assert [shown[name] for name in watched] == [("E", "mm"), ("contact", "mm")] and shown["E"] == ("E drawn", "mJ")
+    for name, slope in zip(watched, (6, 2), strict=True):
+        np.testing.assert_allclose(columns[name], slope * columns["x"], rtol=1e-6, atol=1e-9)
+
+
 def test_chatter_is_said_and_a_bounce_is_not():
     t = np.arange(1000) * T
     shaken = 4e-4 * np.sin(2 * np.pi * 41 * t)
@@ -436,6 +459,74 @@ def test_a_record_is_played_again_and_then_the_scene_goes_on():
     stage.go(0.1)
     assert not stage.flags["replaying"]
     assert stage.session.status == "Paused."
+
+
+def test_a_replay_waits_while_nobody_looks_and_then_the_scene_goes_on():
+    """Scrolled away: time passes, and neither the replay nor the scene. Asked for before anybody looked, it plays then."""
+    log = PADDLE.run(WALL, duration=1.0, progress=False)
+    stage = Stage()
+    stage.session.pressed("replay", log)
+    stage.now += 7.0
+    stage.open()
+    stage.go(0.3)
+    assert stage.flags["replaying"] and stage.frames[-1].time == pytest.approx(0.3, abs=0.02)
+    stage.session.gone("page")
+    stage.session.turn()
+    stage.now += 5.0
+    stage.session.ready("page")
+    stage.go(0.3)
+    assert stage.flags["replaying"] and stage.frames[-1].time == pytest.approx(0.6, abs=0.03)
+    assert stage.session.source.ticks == 0
+    rows = stage.rows
+    np.testing.assert_array_equal(rows[:, 1], log.x[: len(rows)].astype(np.float32))  # none lost, none twice
+    stage.go(0.6)
+    assert not stage.flags["replaying"] and stage.flags["running"] and stage.session.source.ticks > 50
+    stage.session.pressed("replay", log)
+    stage.session.gone("page")
+    stage.session.turn()
+    stage.session.ready("page")
+    stage.session.press("pause")
+    stage.go(0.2)
+    assert stage.session.status == "Paused." and not stage.flags["running"]
+    stage.session.pressed("replay", log)
+    stage.session.end()
+    assert not stage.session.motion.replaying
+
+
+def test_a_replay_follows_parameters_that_were_changed():
+    """The wall went from 10 mm to 0 while the hand stayed near 6 mm."""
+    stage = Stage().open()
+    stage.session.press("record")
+    stage.go(0.3, pointer=lambda now: 0.006)
+    stage.session.move("x_o", 0.0)
+    stage.go(0.3)
+    stage.session.press("stop")
+    stage.session.move("x_o", 0.02)  # what the sliders say now is not what was
+    stage.go(0.1)
+    log, first = stage.session.recorded(), len(stage.frames)
+    (since, _), *_ = log.changes
+    stage.session.press("replay")
+    drawn = []
+    for _ in range(33):
+        stage.go(1 / 60)
+        drawn.append((stage.session.motion.time, stage.session.motion.values()["x_o"]))
+    rows = np.concatenate([frame.rows for frame in stage.frames[first:]])
+    at = np.round(rows[:, 0] / T).astype(int)
+    wall = np.where(log.t < since - T / 2, 0.01, 0.0)[at]
+    assert np.array_equal(rows[:, 5] == 1, (log.x[at] > wall) & (log.F[at] != 0)) and 0 < rows[:, 5].mean() < 1
+    assert all(x_o == (0.01 if time < since - T / 2 else 0.0) for time, x_o in drawn)
+
+
+def test_a_record_of_another_scene_is_played_and_stops_nothing():
+    q = hl.parameters("q", units="N/m", values=10)
+    other = PADDLE.run(hl.Scene(force=q * hl.x(hl.n)), duration=0.3, progress=False)
+    stage = Stage().open()
+    stage.go(0.1)
+    stage.session.pressed("replay", other)
+    frames = stage.go(0.2)
+    rows = np.concatenate([frame.rows for frame in frames])
+    assert stage.flags["replaying"] and stage.flags["running"] and np.isnan(rows[:, 5]).all()
+    assert stage.session.status == "Replaying a record."
 
 
 def test_to_replay_or_save_nothing_is_refused_in_words(tmp_path, monkeypatch):
@@ -780,6 +871,33 @@ def test_plain_widgets_show_and_say_the_same():
     assert not stage.session.motion.running
     stage.go(0.3)
     assert not front.buttons["resume"].disabled
+
+
+def test_plain_traces_begin_anew_with_the_scene_also_within_their_first_seconds():
+    widgets = pytest.importorskip("ipywidgets")
+    from hapticlab.widgets.plain.plain_view import PlainFront
+
+    stage = Stage()
+    front = PlainFront(widgets, stage.session)
+    stage.session.connect(lambda frame: (stage.frames.append(frame), front.show(frame)))
+    stage.open()
+    stage.go(2.0, pointer=lead)
+    assert front._rows[-1, 0] == pytest.approx(2.0, abs=0.02)
+    front.buttons["restart"].click()
+    stage.go(0.5, pointer=lead)
+    assert front._rows[0, 0] == 0 and (np.diff(front._rows[:, 0]) > 0).all()
+    assert front._rows[-1, 0] == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_view_for_an_experiment_tells_no_chatter():
+    """How often a wall chatters a second tells how stiff it is."""
+    told = []
+    for show in (True, False):
+        stage = Stage(scene=hl.wall()(k=6000, x_o=0.01), show_force=show).open()
+        frames = stage.go(2.5, pointer=lambda now: 0.014)
+        told.append(any("Chatter" in frame.status or "vibrates" in frame.status for frame in frames))
+        assert "Running" in stage.session.status
+    assert told == [True, False]
 
 
 def test_a_view_for_an_experiment_tells_no_force():

@@ -88,6 +88,22 @@ def test_a_restart_leaves_a_motor_off_that_is_off(board):
     assert stage.session.motion.speed == 1 and "runs in real time" in stage.session.status
 
 
+def test_a_restart_that_is_refused_says_why_and_no_other_cell_is_blamed(board, monkeypatch):
+    stage = Stage(board).press("start").go(0.2)
+
+    def refuse():
+        raise hl.errors.PaddleError("the handle is too far out")
+
+    monkeypatch.setattr(stage.session.source, "_begin", refuse)
+    stage.press("restart").go(0.3)
+    assert not stage.is_running and not stage.frames[-1].flags["running"]
+    assert "the handle is too far out" in stage.session.status and "another cell" not in stage.session.status
+    assert stage.session.status.startswith("Motor off: press Start")
+    monkeypatch.undo()
+    stage.press("start").go(0.1)
+    assert stage.is_running
+
+
 @pytest.mark.parametrize("how", ["gone", "silent", "close", "sink", "error"])
 def test_the_motor_goes_off_with_whoever_looks(board, how, monkeypatch):
     stage = Stage(board).press("start").go(0.2)
@@ -102,7 +118,7 @@ def test_the_motor_goes_off_with_whoever_looks(board, how, monkeypatch):
         stage.session.connect(lambda frame: 1 / 0)
         stage.go(1 / 60)
     else:
-        monkeypatch.setattr(stage.session.motion.traces, "add", lambda samples: 1 / 0)
+        monkeypatch.setattr(stage.session.motion.traces, "add", lambda *given: 1 / 0)
         stage.go(1 / 60)
     stage.session.turn()
     assert not stage.is_running

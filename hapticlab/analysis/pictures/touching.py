@@ -13,8 +13,8 @@ CLOSE = 1e-6
 def touching(scene, watched=()):
     """Return a function that says at which samples something is touched, or None where the scene has nothing to touch.
 
-    Touched is what has a boundary: the handle or a body is beyond the boundary, or between all boundaries of a patch, and the force acts. A pendulum, a mass or
-    a damper that hangs on the handle has no boundary.
+    Touched is what has a boundary: the handle or a body is beyond it, or between the boundaries of a patch, and the force
+    acts. A pendulum, a mass or a damper that hangs on the handle has no boundary.
 
     Parameters
     ----------

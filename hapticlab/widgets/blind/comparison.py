@@ -101,10 +101,12 @@ def compare_blind(
 class BlindComparison:
     """Pairs that a person compares blindly; made by :func:`compare_blind`."""
 
+    _shown: int | None  # which presentation is on view
+
     def __init__(self, paddle, task, procedure, seed, keep, *, duration, pause, **session):
         self.task, self._paddle, self._seed, self._keep = task, task.on(paddle), seed, keep
         self._fresh, self._procedure = copy.deepcopy(procedure), procedure
-        self._order, self._trials = np.random.default_rng(seed), []
+        self._order, self._trials, self._missed = np.random.default_rng(seed), [], 0
         scene = task.scene(**{task.parameter: task.standard})
         self._session = Session(self._paddle, scene, sliders={}, show_force=False, **session)
         self._seconds, self._box, self._head, self._rehearsed = {"duration": duration, "pause": pause}, None, None, None
@@ -114,8 +116,9 @@ class BlindComparison:
     @property
     def result(self) -> ForcedChoice | None:
         """The answers so far; None before the first one."""
-        if not self._trials:
-            return None
+        return self._found() if self._trials else None
+
+    def _found(self) -> ForcedChoice:
         left = None if self._procedure.done else f"{len(self._trials)} trials so far; the procedure asks for more"
         stopped = getattr(self._procedure, "gave_up", None) or left
         estimate = None if stopped or not hasattr(self._procedure, "estimate") else self._procedure.estimate()
@@ -147,29 +150,40 @@ class BlindComparison:
         self._session.intend(0.0)
         self._session.hold(True)
         self._session.press("start", age)
-        self._felt.add(which)
-        self._shown, self._limited = True, False
+        self._shown, self._limited = which, False
         self._tell()
+
+    def _notice(self):
+        """Count a presentation as felt once it runs: a board drops a Start that comes late."""
+        session = self._session
+        if self._shown is not None and session.motion.running and not session.source.waits:
+            self._felt.add(self._shown)
 
     def hide(self) -> None:
         """End a presentation: nothing moves, and a board's motor is off; a simulated handle goes back to the middle, unseen."""
         self._session.intend(0.0)
-        if self._shown and self._session.source.kind == "simulated":
+        if self._shown is not None and self._session.source.kind == "simulated":
             self._session.press("start")
-        self._shown = False
+        missed, self._shown = self._shown is not None and self._shown not in self._felt, None
         self._session.press("pause")
+        if missed:
+            self._missed += 1
+            self._tell()
 
     def answer(self, which: int) -> None:
         """Take the answer that the first or second presentation, 0 or 1, was stronger; the next pair is drawn."""
-        if self.done or self._felt != {0, 1}:
+        if self.done:
+            return
+        if self._felt != {0, 1}:
+            self.hide()
             return
         self.hide()
-        answer = WHICH[which]
-        trial = Trial(self._procedure.level, *self._pair, answer, self._pair[which] == max(self._pair))
+        first, second = self._pair
+        trial = Trial(self._procedure.level, first, second, WHICH[which], self._pair[which] == max(self._pair))
         self._procedure.answer(trial.right)
         self._trials.append(trial)
         if self._keep is not None:
-            self.result.to_csv(self._keep)
+            self._found().to_csv(self._keep)
         if not self.done:
             self._next_pair()
         self._tell()
@@ -177,24 +191,28 @@ class BlindComparison:
     def _next_pair(self):
         standard, comparison = self.task.standard, self.task.standard * math.exp(self._procedure.level)
         self._pair = (comparison, standard) if self._order.integers(2) else (standard, comparison)
-        self._felt, self._shown, self._limited = set(), False, False
+        self._felt, self._shown, self._limited = set(), None, False
 
     def _heard(self, _, content, buffers):
         """Take a word of the page."""
         name, value, age = self._words.read(bytes(buffers[0]))
+        self._notice()
         if name == "show":
             self.show(value, age)
         elif name == "answer":
             self.answer(value)
-        elif name == "hide" or (not self._shown and self._session.motion.running):
+        elif name == "hide" or (self._shown is None and self._session.motion.running):
             self.hide()
-        elif self._shown and self._session.at_limit and not self._limited:
+        elif self._shown is not None and self._session.at_limit and not self._limited:
             self._limited = True
             self._tell()
 
     def _state(self):
         last = self._trials[-1].answer if self._trials else ""
-        return {"trial": len(self._trials) + 1, "answered": last, "done": self.done, "limited": self._limited}
+        trial, felt = len(self._trials) + 1, len(self._felt)
+        return {
+            "trial": trial, "answered": last, "done": self.done, "limited": self._limited, "felt": felt, "missed": self._missed,
+        }  # fmt: skip
 
     def _tell(self):
         if self._head is not None:

@@ -22,6 +22,7 @@ class BlindHead {
     el.append(node("section", { class: "hl-blind-head", "aria-label": "blind comparison" }, [node("div", {}, [this.counter, ...this.buttons]), this.words]))
     this.key = (event) => this.press(event)
     this.trial = this.state.trial
+    this.missed = this.state.missed
     model.on("change:state", () => this.told())
     this.heart = setInterval(() => this.beat(), HEARTBEAT)
     this.next = 0 // the presentation that comes next: 0, 1, or 2 where both were felt
@@ -99,11 +100,21 @@ class BlindHead {
   // The kernel has an answer: say so, and go on to the next pair; or the motor is at its limit.
   told() {
     if (this.state.limited && this.shown) this.words.textContent = "The motor is at its limit, and that hides the difference. Move less far."
+    if (this.state.missed !== this.missed) return this.again()
     if (this.state.trial === this.trial) return
     this.trial = this.state.trial
     this.next = 0
     this.sent = false
     this.cover("")
+  }
+
+  // A presentation that the kernel did not begin is felt again.
+  again() {
+    clearTimeout(this.timer)
+    this.missed = this.state.missed
+    this.next = this.state.felt
+    this.waiting = this.sent = false
+    this.cover(`The ${this.next ? "second" : "first"} one did not start. ${this.about.board ? "Hold the handle, and press" : "Press"} Space to feel it.`)
   }
 
   cover(words) {

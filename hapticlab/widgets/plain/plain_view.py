@@ -97,9 +97,8 @@ class PlainFront:
     def show(self, frame):
         """Draw a frame, if the one before is long enough ago."""
         if len(frame.rows):
-            self._rows = np.concatenate([self._rows, frame.rows])
-        if len(frame.rows) and frame.rows[0, 0] < self._rows[0, 0]:
-            self._rows = np.asarray(frame.rows)  # time began anew
+            anew = len(self._rows) and frame.rows[0, 0] < self._rows[-1, 0]
+            self._rows = np.asarray(frame.rows) if anew else np.concatenate([self._rows, frame.rows])
         self._rows = self._rows[self._rows[:, 0] > frame.time - SECONDS]
         if frame.status:
             self.status.value = f'<span role="status">{html.escape(frame.status)}</span>'

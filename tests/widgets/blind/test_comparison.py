@@ -142,6 +142,26 @@ def test_a_boards_motor_is_on_during_a_presentation_alone_and_never_by_a_late_pr
             hl.people.compare_blind(board, TASK).rehearsal  # noqa: B018
 
 
+def test_a_presentation_that_did_not_start_is_not_felt_and_the_page_is_told_to_repeat_it():
+    hand = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch", intent=0.005))
+    with hl.connect("sim://hapkit", paddle=hand) as board:
+        page = Page(board, hl.people.stiffness_task(standard=100.0))
+
+        def told():
+            state = page.blind._state()
+            return state["felt"], state["missed"]
+
+        page.say("alive").say("show", 0, late=1.0).go(0.3).say("hide")  # the board drops a late Start
+        assert told() == (0, 1)
+        page.say("show", 1).go(0.3).say("hide").say("answer", 1)
+        assert told() == (0, 1) and page.blind.result is None and not page.session.motion.running
+        page.say("show", 0).go(0.3).say("hide")
+        page.say("show", 1, late=1.0).go(0.3).say("answer", 1)
+        assert told() == (1, 2) and page.blind.result is None
+        page.say("show", 1).go(0.3).say("answer", 1)
+        assert told() == (0, 2) and len(page.blind.result.trials) == 1
+
+
 def test_what_cannot_be_compared_is_refused(paddle):
     done = hl.people.ConstantLevels([0.1], repeats=1)
     done.answer(True)
