@@ -250,7 +250,7 @@ LAB = Lab(
             "culprit",
             kind="choice",
             points=1,
-            asks="what drives the oscillation of the record",
+            asks="what drives the oscillation in the report",
             options={"a": "the hold", "b": "a delay", "c": "the encoder", "d": "tremor"},
             cases=(
                 Case(
@@ -267,13 +267,13 @@ LAB = Lab(
                             "oscillation remained."
                         ),
                         "d": (
-                            "The frequency falls from 24 Hz to 18 Hz when the wall is softer, so it depends on the "
+                            "The frequency falls from 29 Hz to 16 Hz when the wall is softer, so it depends on the "
                             "wall. A tremor keeps its own frequency, 8 to 12 Hz."
                         ),
                     },
                 ),
             ),
-            hint="What does the sensed position do? Which changes made no difference?",
+            hint="What does the sensed position do? Which changes did not stop the oscillation?",
             matters=(
                 "A remedy for the wrong cause changes nothing. A recording can separate the causes before you change the device."
             ),

@@ -262,9 +262,11 @@ LAB = Lab(
                     {},
                     "a",
                     slips={
-                        "b": "Ellis's law compensates for the hold, but not for the period of delay: see the second table of "
-                        "5 Measure. It also amplifies each encoder count up to four times: see the price of a prediction.",
-                        "c": "Inside a plain wall the two dampers cancel in slow motion: see the row `damped` of 5 Measure.",
+                        "b": "Ellis's law compensates for the hold, but not for the period of delay: see the second table "
+                        "of the section on the remaining leak. It also amplifies each encoder count up to four times: see "
+                        "the price of a prediction.",
+                        "c": "Inside a plain wall the two dampers cancel in slow motion: see the row `damped` in the section on "
+                        "the remaining leak.",
                         "d": "Its forces change with the position by m/T^2, so each encoder count is a kick. Its model also "
                         "describes one hand, not thirty.",
                     },
