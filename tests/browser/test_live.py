@@ -93,7 +93,7 @@ def test_a_number_is_taken_as_it_was_typed(page):
         entry.fill(typed)
         entry.press("Enter")
         eventually(page, "print(view.values['k'])", f"{value}")
-    assert words.text_content() == "“1,000” is not a number; k stays at 1234.57 N/m"
+    assert words.text_content() == "“1,000” could be 1 or 1000: type one of these; k stays at 1234.57 N/m"
     for absurd in ("abc", "1e9", "-1e9"):
         entry.fill(absurd)
         entry.press("Enter")

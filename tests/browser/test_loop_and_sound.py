@@ -113,9 +113,7 @@ def test_a_contact_longer_than_what_is_kept_has_its_energy_and_is_not_drawn(page
     assert found["words"][1] == "more given back than taken; too long to draw"
 
 
-@pytest.mark.parametrize(
-    ("kind", "told"), [("board", "samples are missing: no contact is counted across a gap"), ("simulated", "")]
-)
+@pytest.mark.parametrize(("kind", "told"), [("board", "samples are missing: loop not counted"), ("simulated", "")])
 def test_what_samples_are_missing_from_is_no_loop(page, kind, told):
     x = np.concatenate([press(), press(depth=0.007)])
     t, F = np.arange(len(x)) * T, K * np.maximum(x, 0)
@@ -137,8 +135,8 @@ def test_a_loop_says_what_it_is_where_that_is_less_than_it_seems(page):
     F = K * np.maximum(x, 0)
     thinned = {"T": 4e-4, "apart": 8e-4}
     found = page.evaluate(LOOP, [rows(x, F, F > 0, np.arange(len(x)) * 8e-4), list(COLUMNS), True, {**thinned, "speed": 0.1}])
-    assert not found["isRed"] and found["words"][1] == "more given back than taken; not drawn to scale"
-    assert found["words"][0].endswith("per contact (5 in 1 s of scene time)")
+    assert not found["isRed"] and found["words"][1] == "more given back than taken; not to scale"
+    assert found["words"][0].endswith("per contact (5 in 1 s of t)")
     nothing = page.evaluate(LOOP, [rows(x, 0 * F, F > 0), list(COLUMNS), True])["words"]
     assert nothing == ["0.00 mJ per contact (5 in 1 s)", "as much given back as taken"]
 

@@ -193,9 +193,9 @@ class Loop {
     const energy = 1000 * (several ? this.mean : this.shown.energy)
     const none = Math.abs(energy) < 0.005
     const much = `${none ? "" : energy < 0 ? "−" : "+"}${shown(Math.abs(energy))} mJ`
-    const head = several ? `${much} per contact (${this.many} in 1 s${this.speed === 1 ? "" : " of scene time"})` : `${much} in the last ${who}`
-    if (this.board && this.samples.last("t") - this.gapAt < WINDOW) return [head, `samples are missing: no ${who} is counted across a gap`]
+    const head = several ? `${much} per contact (${this.many} in 1 s${this.speed === 1 ? "" : " of t"})` : `${much} in the last ${who}`
+    if (this.board && this.samples.last("t") - this.gapAt < WINDOW) return [head, "samples are missing: loop not counted"]
     const means = none ? "as much given back as taken" : energy < 0 ? "more taken than given back" : "more given back than taken"
-    return [head, means + (this.shown.long ? "; too long to draw" : this.samples.complete ? "" : "; not drawn to scale")]
+    return [head, means + (this.shown.long ? "; too long to draw" : this.samples.complete ? "" : "; not to scale")]
   }
 }

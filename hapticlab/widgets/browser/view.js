@@ -235,6 +235,7 @@ class View {
     if (this.loop && this.due("loopedAt", now, LOOPED)) {
       this.loop.draw(now, theme)
       const [much, means] = this.loop.words()
+      this.energy.title = means // where it is cut off
       this.energy.replaceChildren(make("b", {}, [much]), make("br", {}), means)
     }
     if (this.due("readAt", now, READOUT)) this.read()

@@ -65,7 +65,7 @@ function hint({ about, flags, silent, touched, samples }) {
   if (!flags.held) return "The handle is free. Press L, or drag it, to take it again."
   if (flags.vibrates) return "M slows time down, Z enlarges the last 0.2 s, U lets you hear it."
   if (!touched) return "Drag the handle, or use the arrow keys."
-  if (samples.last("contact") === 1) return "Come out again: the shaded loop is the energy of the contact."
+  if (samples.last("contact") === 1) return `Come out again: ${samples.complete ? "the shaded loop" : "below the loop"} is the energy of the contact.`
   return about.touches ? "Push until you touch something." : "L releases the handle. A starts again."
 }
 
