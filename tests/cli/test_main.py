@@ -602,7 +602,7 @@ def test_tradeoff_prints_what_it_chose_and_draws_it(tmp_path):
     (tmp_path / "spring.py").write_text(SPRING)
     done = command("tradeoff", "spring.py", "--T", "2e-3", "1e-3", "--targets", "uno", folder=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "hl.compile(scene, method='rk4', T=0.002," in done.stdout and "none beats" in done.stdout
+    assert "hl.compile(scene, method='rk4', T=0.002," in done.stdout and "rows that no other row beats" in done.stdout
     assert (tmp_path / "hapticlab-tradeoff" / "spring-tradeoff.png").read_bytes().startswith(PNG)
     with open(tmp_path / "hapticlab-tradeoff" / "spring-tradeoff.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -618,7 +618,7 @@ def test_tradeoff_says_as_json_what_to_relax(tmp_path, capsys):
     facts = json.loads(capsys.readouterr().out)
     answer = facts["chosen"]["uno"]
     assert answer["feasible"] is False and facts["rows"] == 1
-    assert "b >= 0.45 N s/m, this one has 0.3 N s/m" in answer["relax"][0]  # k T/2
+    assert "b >= 0.45 N s/m (this one has 0.3 N s/m)" in answer["relax"][0]  # k T/2
     assert main.main(["tradeoff", str(path), "--any-hand", *there]) == 0
     assert json.loads(capsys.readouterr().out)["chosen"]["uno"]["options"]["T"] == 1e-3
 

@@ -166,7 +166,9 @@ def test_the_entrypoint_writes_what_a_submission_earned(course, tmp_path):
 @pytest.mark.wide
 def test_a_broken_upload_costs_no_attempt(course, tmp_path):
     results = graded_there(course, tmp_path, None)
-    assert results["gradable"] is False and "no notebook" in str(results["format_errors"])
+    assert results["gradable"] is False and "is not a notebook; it needs the JSON that Jupyter writes" in str(
+        results["format_errors"]
+    )
 
 
 @needs_bash

@@ -271,7 +271,12 @@ class Tradeoff(Tabular):
             *LEGEND,
         ]
         for target in self.targets:
-            lines += ["", f"{target}: the best rows", self.front(target).brief(), str(self.choose(target=target, **asked))]
+            lines += [
+                "",
+                f"{target}: rows that no other row beats",
+                self.front(target).brief(),
+                str(self.choose(target=target, **asked)),
+            ]
         return "\n".join(lines)
 
     _hidden = ("bench",)

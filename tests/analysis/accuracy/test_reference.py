@@ -185,7 +185,7 @@ def test_chaos_cuts_the_horizon():
     assert found.chaotic and 0.8 < found.horizon < 8.0
     assert found.agreement <= 1e-6 * found.peak and found.certified
     assert np.isnan(found.at([7.999])[0]) and np.isfinite(found.at([0.5])[0])
-    assert "chaotic from" in str(found)
+    assert "chaotic after" in str(found)
 
 
 def test_what_has_one_solver_is_not_certified():

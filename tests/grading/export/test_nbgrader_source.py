@@ -117,7 +117,7 @@ def test_feedback_says_what_is_wrong(course):
     lab = LABS["02"]
     page = (course / "feedback" / "bob" / lab.name / f"{lab.name}.html").read_text("utf-8")
     words = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", "", page))
-    assert "a triangle, not a square" in words  # the sentence for k D^2
+    assert "a triangle, not a rectangle" in words  # the sentence for k D^2
     assert "Score: 8.0 / 10.0" in words
 
 

@@ -110,7 +110,7 @@ def test_otter_gives_what_was_right(otter, made, number, wrong, tmp_path):
     assert {name: results[name]["score"] for name in judged} == {name: 0 if name in wrong else judged[name] for name in judged}
     assert {name: results[name]["max_score"] for name in judged} == judged
     assert sum(results[name]["score"] for name in judged) == earned(lab, wrong)
-    assert ("a triangle, not a square" in json.dumps(results)) == ("period_leak" in wrong)  # the sentence for k D^2
+    assert ("a triangle, not a rectangle" in json.dumps(results)) == ("period_leak" in wrong)  # the sentence for k D^2
 
 
 def test_questions_of_every_lab_have_their_points():

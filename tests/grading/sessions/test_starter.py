@@ -206,7 +206,7 @@ def test_memory_is_bounded_by_a_group_where_there_is_one(starter):
 @pytest.mark.wide
 @pytest.mark.parametrize("level", ["landlock", "none"])
 def test_processes_are_refused_where_none_counts_them(level):
-    with pytest.raises(CourseError, match="needs namespaces, or a user of its own"):
+    with pytest.raises(CourseError, match="needs namespaces, or a separate user by which the system counts processes"):
         start(level, limits=MANY)
 
 
