@@ -249,7 +249,7 @@ def _panel(axes):
         text = f"{up.split(', ')[0] if told and axes.lines else up} over {across}"
     text += (": " if told else "") + "; ".join(told)
     marked = dict.fromkeys(word for word in (_plain(one.get_text()) for one in axes.texts) if re.search("[a-zA-Z]{3}", word))
-    marked = [word for word in marked if word not in {_plain(line.get_label()) for line in axes.lines}]
+    marked = [word for word in marked if word not in text and word not in {_plain(line.get_label()) for line in axes.lines}]
     marked = _sentence(f"marked: {', '.join(marked)}") if marked else ""
     return " ".join(filter(None, [title, _sentence(text), marked, _legend([axes.get_legend()], [axes])]))
 
@@ -287,9 +287,13 @@ def _course(axes, line):
     known = np.isfinite(xs) & np.isfinite(ys) & (left <= xs) & (xs <= right)
     xs, ys = xs[known], np.where(abs(ys[known]) < 1e-9 * np.ptp(axes.get_ylim()), 0.0, ys[known])
     alone = sum(not _plain(other.get_label()).startswith("_") for other in axes.lines) == 0 and len(axes.lines) <= 2
-    if not len(ys) or (guide and not alone):
+    if (guide and not alone) or not line.get_xdata(orig=False).size:
         return ""
     name = "" if guide else f"{name}: "
+    if not np.isfinite(line.get_ydata(orig=False)).any():
+        return f"{name}not known anywhere"
+    if not len(ys):
+        return ""
     if len(ys) == 1:
         return f"{name}at {xs[0]:.3g}, {ys[0]:.3g}"
     if line.get_linestyle() == "None":

@@ -15,6 +15,8 @@ from functools import cache
 from textwrap import shorten
 from typing import Any, NamedTuple
 
+from ..errors import HapticlabError
+
 #: SI unit -> (below which size, factor, what is shown), the smallest first
 _PREFIXED = {
     "m": ((1e-4, 1e6, "µm"), (1.0, 1e3, "mm")),
@@ -24,6 +26,7 @@ _PREFIXED = {
 _UNIT = re.compile(r"\[((?:1|m|s|kg|N|J|W|Hz|rad|mm|um|ms|bytes?|bit|deg|V|A|[-^/*(). 0-9,])+)\]")
 _SECTION = re.compile(r"^(?:Parameters|Attributes)\n-+\n((?:.*\n?)*?)(?=^\w[^\n]*\n-{3,}|\Z)", re.MULTILINE)
 _ENTRY = re.compile(r"^(\w[\w, ]*?)( : .*)?\n((?:[ \t]+.*\n|\n)*)", re.MULTILINE)
+_ABSENT = object()
 _MARKUP = ((r":\w+:`~?(?:[\w.]*\.)?([^`]*)`", r"\1"), (r"`+([^`]*)`+", r"\1"), (r"\\+(.)", r"\1"))
 
 
@@ -92,7 +95,16 @@ def facts(record: Any) -> list[Fact]:
     names = [name for name in known if not name.startswith("_")]
     if is_dataclass(record):
         names += [f.name for f in fields(record) if f.name not in known and f.repr and not f.name.startswith("_")]
-    return [Fact(name, getattr(record, name), *known.get(name, ("", ""))) for name in names if hasattr(record, name)]
+    held = {name: value for name in names if (value := _held(record, name)) is not _ABSENT}
+    return [Fact(name, value, *known.get(name, ("", ""))) for name, value in held.items()]
+
+
+def _held(record, name):
+    """An attribute; one that a record does not have, or that it refuses, is no fact of it."""
+    try:
+        return getattr(record, name)
+    except (AttributeError, HapticlabError):
+        return _ABSENT
 
 
 def shown_unit(values: Any, unit: str) -> tuple[float, str]:
@@ -123,10 +135,11 @@ def short(number: float) -> str:
 
     Examples
     --------
-    >>> short(799107.4), short(0.000123456), short(3.0)
-    ('799107', '0.0001235', '3')
+    >>> short(799107.4), short(0.000123456), short(3.0), short(9999.6), short(-0.0)
+    ('799107', '0.0001235', '3', '10000', '0')
     """
-    return f"{number:.0f}" if 1e4 <= abs(number) < 1e7 else f"{number:.4g}"
+    rounded = float(f"{number:.4g}") + 0.0  # which turns -0.0 into 0.0
+    return f"{number:.0f}" if 1e4 <= abs(rounded) < 1e7 else f"{rounded:.4g}"
 
 
 def in_words(value: Any, unit: str = "") -> tuple[str, str]:
@@ -170,17 +183,29 @@ def _of_array(array, unit):
     if array.dtype.kind == "b":
         return f"{array.sum()} of {array.size}", ""
     known = array[abs(array) < math.inf]
-    factor, unit = shown_unit(known, unit)
-    span = f", {short(known.min() * factor)} to {short(known.max() * factor)}" if len(known) else ""
-    return f"{' x '.join(map(str, array.shape))} values{span}", unit
+    ends = (known.min().item(), known.max().item()) if len(known) else ()
+    unknown = int((array != array).sum())
+    return _span(" x ".join(map(str, array.shape)), ends, unknown, array.size - len(known) - unknown, unit)
+
+
+def _span(shape, ends, unknown, infinite, unit):
+    """Many numbers by their ends; what is not known or infinite is counted apart, so that no end stands for it."""
+    counted = f"{shape} value{'s' * (shape != '1')}"
+    apart = ", ".join(f"{count} {what}" for count, what in ((unknown, "not known"), (infinite, "infinite")) if count)
+    if not ends:
+        return f"{counted}, {apart if infinite else 'not known anywhere'}", ""
+    factor, unit = shown_unit(ends, unit)
+    return f"{counted}{f' ({apart})' * bool(apart)}, {short(ends[0] * factor)} to {short(ends[1] * factor)}", unit
 
 
 def _of_sequence(parts, unit):
     if parts and all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in parts):
-        factor, unit = shown_unit(parts, unit)
         if len(parts) > 6:
-            return f"{len(parts)} values, {short(min(parts) * factor)} to {short(max(parts) * factor)}", unit
-        return ", ".join(short(part * factor) for part in parts), unit
+            known, unknown = [part for part in parts if math.isfinite(part)], sum(part != part for part in parts)
+            ends = (min(known), max(known)) if known else ()
+            return _span(str(len(parts)), ends, unknown, len(parts) - len(known) - unknown, unit)
+        factor, unit = shown_unit(parts, unit)
+        return ", ".join("not known" if part != part else short(part * factor) for part in parts), unit
     if len(parts) > 6 or any(is_dataclass(part) for part in parts):
         return f"{len(parts)} of them", ""
     return "; ".join(filter(None, (_joined(in_words(part)) for part in parts))), ""

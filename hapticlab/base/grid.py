@@ -26,7 +26,7 @@ class Grid:
     (['law', 'depth [mm]'], [['zoh', '2'], ['ellis', '1.5']])
     """
 
-    def __init__(self, columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] | None = None, all: str = "") -> None:
+    def __init__(self, columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] | None = None) -> None:
         self.columns, self.units = dict(columns), dict(units or {})
         numbers = {name: _numbers(values) for name, values in self.columns.items()}
         self._scales = {
@@ -62,8 +62,8 @@ class Grid:
     def _cell(self, name, value):
         factor, _ = self._scales[name]
         value = value.item() if hasattr(value, "item") and not value.shape else value
-        if isinstance(value, float):
-            return "" if value != value else short(value * factor)
+        if isinstance(value, float) or (isinstance(value, int) and self.units.get(name) and not isinstance(value, bool)):
+            return "" if value != value else short(value * factor)  # the head has the unit
         return " ".join(filter(None, in_words(value, self.units.get(name, ""))))
 
     def to_pandas(self) -> Any:

@@ -151,7 +151,7 @@ class Tabular(ShowsItself):
         AnalysisError
             Where pandas is not installed.
         """
-        return next(iter(self._tables()))[1].to_pandas()
+        return next((grid for _, grid in self._tables()), Grid({})).to_pandas()
 
 
 class Typeset(ShowsItself):
@@ -227,12 +227,15 @@ def _drawn(figure):
     """The figure as an image with its alternative text; a sentence where there is nothing to draw."""
     try:
         drawn = figure()
+        if drawn is None:
+            return ""
+        data, _ = drawn._repr_mimebundle_()
+        return data["text/html"]
     except HapticlabError as nothing:
-        return f'<p style="{_QUIET}">No figure: {escape(str(nothing))}</p>'
-    if drawn is None:
-        return ""
-    data, _ = drawn._repr_mimebundle_()
-    return data["text/html"]
+        why = str(nothing)
+    except Exception as bug:  # a notebook would hide a result whose figure fails, with its sentence and its table
+        why = f"{type(bug).__name__}: {bug}"
+    return f'<p style="{_QUIET}">No figure: {escape(why)}</p>'
 
 
 def _folded(title, inside):

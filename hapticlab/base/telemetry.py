@@ -12,7 +12,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..errors import AnalysisError
-from .facts import Fact, facts
+from .facts import Fact, facts, in_words
 from .grid import frame, labelled
 from .missed_events import depth_words, ends_inside
 from .shows_itself import ShowsItself
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 UNITS = {"t": "s", "x": "m", "v": "m/s", "F": "N", "x_true": "m", "v_true": "m/s", "F_applied": "N", "x_switch": "m"}
 FLAGS = ("saturated", "gap", "overrun")
+ABOUT = ("scene", "paddle", "T", "delay", "every", "fault")
 #: what people try -> what a record has
 MEANT = {
     "time": "t", "times": "t", "position": "x", "pos": "x", "velocity": "v", "vel": "v", "speed": "v", "force": "F", "f": "F",
@@ -109,6 +110,7 @@ class Telemetry(ShowsItself):
         with a sample: ``unlocated``, steps that left one out, and ``overlap``, how deep bodies are inside each other at
         its end.
     units : dict of str to str
+        Of what was recorded, and of parameters where the scene names them.
     paddle, scene : str
     parameters : dict of str to float
         The scene's parameters, SI.
@@ -208,7 +210,15 @@ class Telemetry(ShowsItself):
         listed = [Fact(name, getattr(self, name), self.units.get(name, ""), MEANINGS.get(name, "")) for name in self.columns]
         raised = [Fact(name, getattr(self, name), "", MEANINGS[name]) for name in FLAGS if getattr(self, name).any()]
         rest = [fact for fact in facts(self) if fact.name in ("T", "delay", "every", "paddle", "parameters", "changes")]
-        return [*listed, *raised, *rest]
+        told = {
+            "parameters": self._with_units(self.parameters),
+            "changes": "\n".join(f"after {' '.join(in_words(t, 's'))}: {self._with_units(set_)}" for t, set_ in self.changes),
+        }
+        return [*listed, *raised, *(fact._replace(value=told.get(fact.name, fact.value)) for fact in rest)]
+
+    def _with_units(self, parameters):
+        shown = {name: " ".join(in_words(value, self.units.get(name, ""))).strip() for name, value in parameters.items()}
+        return "; ".join(f"{name} = {words}" for name, words in shown.items())
 
     def _is_open(self, fact):
         return isinstance(fact.value, np.ndarray)
@@ -220,7 +230,7 @@ class Telemetry(ShowsItself):
         yield "In words", repr(self)
 
     def to_pandas(self) -> Any:
-        """The record as a ``pandas.DataFrame`` over t, SI; its ``attrs`` have units, parameters, scene, paddle and T.
+        """The record with its flags as a ``pandas.DataFrame`` over t, SI; its ``attrs`` have the units and all else.
 
         Raises
         ------
@@ -235,30 +245,32 @@ class Telemetry(ShowsItself):
         >>> list(table.columns), table.attrs["units"]["F"]
         (['x', 'v', 'F'], 'N')
         """
-        raised = [name for name in FLAGS if getattr(self, name).any()]
-        columns = {name: getattr(self, name) for name in (*self.columns, *raised)}
-        return frame(columns, self.units, **self._about()).set_index("t")
+        columns = {name: getattr(self, name) for name in (*self.columns, *FLAGS)}
+        about = {name: getattr(self, name) for name in ("parameters", "changes", *ABOUT)}
+        return frame(columns, self.units, **about).set_index("t")
 
     def to_xarray(self) -> Any:
-        """The record as an ``xarray.Dataset`` over t, SI; each variable has its unit in ``attrs["units"]``.
+        """The record with its flags as an ``xarray.Dataset`` over t, SI; each variable has its unit in ``attrs["units"]``.
+
+        Its own ``attrs`` have all else as numbers and texts, which a netCDF file takes: ``"parameter k"`` is the value of a
+        parameter, ``"changes"`` a text in JSON, and ``"fault"`` is empty where nothing stopped the motor.
 
         Raises
         ------
         AnalysisError
             Where xarray, which is optional, is not installed.
         """
-        variables = {name: (("t",), getattr(self, name)) for name in self.columns if name != "t"}
-        return labelled(variables, {"t": self.t}, self.units, **self._about())
-
-    def _about(self):
-        return {"parameters": self.parameters, "scene": self.scene, "paddle": self.paddle, "T": self.T}
+        variables = {name: (("t",), getattr(self, name)) for name in (*self.columns, *FLAGS) if name != "t"}
+        about = {name: getattr(self, name) for name in ABOUT} | {"fault": self.fault or "", "changes": json.dumps(self.changes)}
+        about |= {f"parameter {name}": value for name, value in self.parameters.items()}
+        return labelled(variables, {"t": self.t}, self.units, **about)
 
     def save(self, path: File) -> Path:
         """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""
         path = Path(path)
         path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
-        plain = ("T", "delay", "units", "paddle", "scene", "parameters", "fault", "every", "changes")
-        about = json.dumps({"order": list(self.channels), **{name: getattr(self, name) for name in plain}})
+        plain = {name: getattr(self, name) for name in ("units", "parameters", "changes", *ABOUT)}
+        about = json.dumps({"order": list(self.channels), **plain})
         arrays = {name: getattr(self, name) for name in ("t", "x", "v", "F", *FLAGS)}
         np.savez(path, about=np.array(about), **arrays, **{f"channel.{k}": a for k, a in self.channels.items()})  # type: ignore[arg-type]
         return path

@@ -145,7 +145,7 @@ class Found(Tabular):
         if not self.converged:
             lines.append(
                 "  NOT CONVERGED: a small change would fit better, and the intervals contain the true value less often than "
-                "{self.confidence:.0%}. Record longer, move the handle further with more force, or give known constants "
+                f"{self.confidence:.0%}. Record longer, move the handle further with more force, or give known constants "
                 "with known="
             )
         if not self.dithered:

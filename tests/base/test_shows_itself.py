@@ -4,9 +4,10 @@ import ast
 import importlib
 import importlib.util
 import inspect
+import json
 import re
 import sys
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache, cached_property
 from html.parser import HTMLParser
 from pathlib import Path
@@ -205,6 +206,32 @@ def test_a_figure_that_cannot_be_drawn_is_a_sentence():
     assert "No figure: " in html and "<img" not in html
 
 
+def test_a_figure_that_fails_hides_no_result(monkeypatch):
+    monkeypatch.setattr(type(LOG), "_figure", lambda self: np.linspace(0, 1, -1))
+    html = LOG._repr_html_()
+    assert re.search(r"<p[^>]*>No figure: ValueError: Number of samples", html) and "100 samples of " in html and "<table" in html
+
+
+def test_an_attribute_that_refuses_is_no_fact():
+    @dataclass
+    class Spring(ShowsItself):
+        """A spring.
+
+        Attributes
+        ----------
+        K, energy : float
+            Stiffness [N/m] and energy [J].
+        """
+
+        K: float
+
+        @property
+        def energy(self):
+            raise hl.HapticlabError("no position yet")
+
+    assert [fact.name for fact in facts(Spring(200.0))] == ["K"] and "200 N/m" in Spring(200.0)._repr_html_()
+
+
 @pytest.mark.wide
 def test_names_cannot_run_as_code():
     name = "<script>alert(1)</script><img src=x onerror=alert(2)>"
@@ -297,8 +324,15 @@ def test_units_come_from_the_docstring():
         (0.0123, "m", ("12.3", "mm")), (2e-6, "s", ("2", "µs")), (0.25, "J", ("250", "mJ")), (300.0, "N/m", ("300", "N/m")),
         (float("nan"), "m", ("not known", "")), (True, "", ("yes", "")), (None, "m", ("", "")), (3, "", ("3", "")),
         ((0.01, 0.02), "m", ("10, 20", "mm")), (0.5, "N*s/m", ("0.5", "N s/m")), ({"k": 100.0}, "", ("k: 100", "")),
-        (np.array([0.0, np.nan, 2e-3]), "m", ("3 values, 0 to 2", "mm")), (np.array([]), "m", ("none", "")),
+        (np.array([0.0, np.nan, 2e-3]), "m", ("3 values (1 not known), 0 to 2", "mm")), (np.array([]), "m", ("none", "")),
         (np.array([True, False]), "", ("1 of 2", "")),
+        (np.array([0.0, np.nan, np.nan]), "N", ("3 values (2 not known), 0 to 0", "N")),
+        (np.full(3, np.nan), "N", ("3 values, not known anywhere", "")),
+        (np.array([np.inf, 1.0]), "", ("2 values (1 infinite), 1 to 1", "")),
+        ([float("nan")] + [1.0] * 7, "N", ("8 values (1 not known), 1 to 1", "N")),
+        ([float("nan"), 2.0], "N", ("not known, 2", "N")),
+        ([float("nan")] * 8, "N", ("8 values, not known anywhere", "")), (np.array([0.25]), "m", ("1 value, 250 to 250", "mm")),
+        (9999.6, "N/m", ("10000", "N/m")), (-0.0, "N", ("0", "N")), (-4e6, "1/m", ("-4000000", "1/m")),
     ],
 )  # fmt: skip
 def test_a_value_in_words(value, unit, words):
@@ -315,6 +349,20 @@ class TestPandasAndXarray:
         assert data["x"].attrs["units"] == "m" and data["t"].attrs["units"] == "s" and data.attrs["T"] == 1e-3
         assert np.array_equal(data["F"].sel(t=0.01, method="nearest"), LOG.F[10])
 
+    def test_a_record_keeps_its_fault_its_flags_and_what_was_changed(self):
+        import xarray
+
+        told = {"delay": 2e-4, "every": 3, "fault": "tick 50: F was nan", "changes": ((0.05, {"k": 300.0}),)}
+        log = replace(LOG, **told, gap=np.arange(100) == 7)
+        table = log.to_pandas()
+        assert {name: table.attrs[name] for name in told} == told
+        data = xarray.load_dataset(bytes(log.to_xarray().to_netcdf()))
+        assert data.attrs["parameter k"] == 500 and (data.attrs["every"], data.attrs["delay"]) == (3, 2e-4)
+        assert data.attrs["fault"] == told["fault"] and json.loads(data.attrs["changes"]) == [[0.05, {"k": 300.0}]]
+        for made in (table, data):
+            assert np.flatnonzero(made["gap"]) == [7] and not made["saturated"].any() and not made["overrun"].any()
+        assert LOG.to_xarray().attrs["fault"] == ""
+
     def test_a_sweep(self):
         found = hl.sweep(hl.wall(), PADDLE, metric="energy", k=[100, 200, 300], b=[0.1, 0.2], v=0.1, duration=0.05)
         table, data = found.to_pandas(), found.to_xarray()
@@ -327,12 +375,38 @@ class TestPandasAndXarray:
         found = hl.stability.wall_map(PADDLE, K=[100.0, 300.0], B=[0.0, 0.1], duration=0.2)
         data = found.to_xarray()
         assert data["regions"].sel(K=300.0, B=0.1) == found.regions[1, 1] and data["amplitude"].attrs["units"] == "m"
+        flags = data["regions"].attrs
+        named = dict(zip(flags["flag_values"], flags["flag_meanings"].split(), strict=True))
+        assert named == dict(enumerate(["passive", "stable", "chatters", "unusable"]))
+
+    def test_nothing_found_is_an_empty_table(self):
+        @dataclass
+        class Nothing(Tabular):
+            """Nothing."""
+
+            rows: tuple = ()
+
+        assert Nothing().to_pandas().empty
 
     def test_tables(self):
         assert hl.bounds.table(PADDLE).to_pandas().set_index("bound").loc["Gil", "K"] == pytest.approx(200)
         assert hl.methods.table().to_pandas()["order"].tolist()[:2] == [1, 1]
         bounces = hl.records.staircase(LOG).to_pandas()
         assert bounces["depth"].item() == hl.records.staircase(LOG).bounces[0].depth and bounces.attrs["units"]["depth"] == "m"
+
+
+def test_whole_numbers_stand_in_the_unit_of_the_head():
+    grid = Grid({"x": [0, 0.002], "K": [100, 20000], "bounces": [3, 4]}, {"x": "m", "K": "N/m"})
+    assert grid.heads == ["x [mm]", "K [N/m]", "bounces"]
+    assert list(grid.rows()) == [["0", "100", "3"], ["2", "20000", "4"]]
+
+
+def test_parameters_and_limits_have_their_units():
+    words = House(replace(LOG, changes=((0.05, {"k": 300.0}),))._repr_html_()).words
+    assert any("B = 0 N s/m; k = 500 N/m; x_o = 0 m" in said for said in words)
+    assert any("after 50 ms: k = 300 N/m" in said for said in words)
+    meanings = {fact.name: fact.meaning for fact in SHOWN["program"]()._facts()}
+    assert meanings["K"] == "Steps are stable up to 799110 N/m" and meanings["m"].endswith("e-05 kg")
 
 
 def test_columns_share_a_unit_and_keep_texts():

@@ -1,5 +1,7 @@
 """Cutting a coast or a throw out of a recording: against a motion that is known in closed form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,13 @@ def test_a_flick_by_hand_in_either_direction_gives_the_ratios():
         assert found.x.max() == pytest.approx(coast()[-1], abs=0.4 * 12 * T)
         fit = hl.identify.spin_down(found, counts_per_metre=1 / COUNT)
         assert B / M in fit["b/m"] and COULOMB / M in fit["coulomb/m"]
+
+
+def test_a_fit_that_did_not_converge_says_what_its_intervals_are_worth():
+    found = hl.identify.spin_down(hl.identify.coasting(log_of(coast())), m=M, counts_per_metre=1 / COUNT, confidence=0.9)
+    assert "NOT CONVERGED" not in str(found)
+    said = str(replace(found, converged=False))
+    assert "NOT CONVERGED: a small change would fit better" in said and "the true value less often than 90%. Record" in said
 
 
 def test_of_a_view_only_the_longest_part_without_a_hand_counts():

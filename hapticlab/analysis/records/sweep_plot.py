@@ -69,9 +69,19 @@ def _lines(axes, result):
     axes.set_xlabel(x_label)
     axes.set_ylabel(label)
     scale_axis(axes, "x", x_scale * result.axes[over])
+    _show_whole_axis(axes, x_scale * result.axes[over])
+    if np.isnan(values).all():
+        axes.text(0.5, 0.5, "not known anywhere", transform=axes.transAxes, ha="center")
+        axes.set_yticks([])
     if len(names) == 2:
         axes.legend(**FRAME)
     return over, None
+
+
+def _show_whole_axis(axes, swept):
+    """Make room for all that was swept, also where nothing is known there."""
+    axes.update_datalim([(x, 0.0) for x in swept], updatey=False)
+    axes.autoscale_view(scaley=False)
 
 
 def _map(figure, axes, result):

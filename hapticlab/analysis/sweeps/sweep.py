@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 OPTIONS = ("method", "substeps", "hold", "force_at")
 
 
-METRIC = "The metric at every point; nan where the program faulted"
+METRIC = "The metric at every point; nan where the program faulted or the run does not decide"
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,8 @@ class Sweep(ShowsItself, Guessed):
     axes : dict of str to array
         The swept names, in the order given; SI units.
     values : array, one dimension an axis
-        nan where the program faulted (a force that was not finite stops the motor).
+        nan where the program faulted (a force that was not finite stops the motor), and where the run does not decide: of
+        chatter and growth, for instance, where it ends too early.
     metric, unit : str
     units : dict of str to str
         Of the axes.
@@ -81,7 +82,9 @@ class Sweep(ShowsItself, Guessed):
 
     def _sentence(self):
         of = " and ".join(f"{name} ({len(values)} values)" for name, values in self.axes.items())
-        return f"{self.metric} over {of}: {self.values.size} runs of {self.duration:g} s"
+        unknown = np.count_nonzero(np.isnan(self.values))
+        left = f"; {unknown} of {self.values.size} not known: faulted, or too short to decide" if unknown else ""
+        return f"{self.metric} over {of}: {self.values.size} runs of {self.duration:g} s{left}"
 
     def _facts(self):
         swept = [Fact(name, values, self.units.get(name, ""), "Swept") for name, values in self.axes.items()]

@@ -121,7 +121,9 @@ class WallMap(ShowsItself):
         """
         over = tuple(self.axes)
         variables = {name: (over, getattr(self, name)) for name in ("regions", "amplitude", "undecided")}
-        return labelled(variables, self.axes, self.units | {"amplitude": "m"}, about=self.about)
+        made = labelled(variables, self.axes, self.units | {"amplitude": "m"}, about=self.about)
+        made["regions"].attrs |= {"flag_values": list(range(len(REGIONS))), "flag_meanings": " ".join(REGIONS)}
+        return made
 
     def __str__(self) -> str:
         (K, k), (other, a) = self.axes.items()

@@ -73,7 +73,7 @@ def evaluate(
     found = dict(zip((c.name for c in program.outputs), outputs.T, strict=True))
     log = Telemetry(
         t=T * np.arange(len(position)), x=position, v=given.get("v", np.diff(position, prepend=position[:1]) / T),
-        F=found.pop("F"), T=T, channels=found, units={c.name: c.unit for c in program.outputs if c.name in found},
+        F=found.pop("F"), T=T, channels=found, units=program.units,
         paddle="a handle that moves as it is told", scene=program.name, parameters=numbers,
     )  # fmt: skip
     return warn_of_missed(log)

@@ -14,7 +14,7 @@ from numbers import Real
 
 import numpy as np
 
-from ...base.facts import Fact, short
+from ...base.facts import Fact, in_words
 from ...base.grid import Grid
 from ...base.shows_itself import ShowsItself
 from ...errors import ProgramError
@@ -116,6 +116,11 @@ class Program(ShowsItself):
         return len(self.tick)
 
     @property
+    def units(self):
+        """The unit of each parameter and output, by its name."""
+        return {channel.name: channel.unit for channel in (*self.parameters, *self.outputs)}
+
+    @property
     def size(self):
         """The number of all instructions, of both blocks and leaves too: what a program takes in memory."""
         return len(self.init.instructions) + len(self.tick.instructions)
@@ -169,7 +174,7 @@ class Program(ShowsItself):
 
     def _facts(self):
         values = zip(self.parameters, self.values, strict=True)
-        shown = [Fact(c.name, value, c.unit, _stable(*self.limits.get(c.name, ()))) for c, value in values]
+        shown = [Fact(c.name, value, c.unit, _stable(c.unit, *self.limits.get(c.name, ()))) for c, value in values]
         listed = {name: ", ".join(c.name for c in getattr(self, name)) for name in ("inputs", "states", "outputs")}
         meanings = ("What it reads at each sample", "What it keeps from tick to tick", "What it gives: the force first")
         shown += [Fact(name, listed[name], "", words) for name, words in zip(listed, meanings, strict=True)]
@@ -202,10 +207,11 @@ class Program(ShowsItself):
         return "\n".join(lines + [f"note: {note}" for note in self.notes])
 
 
-def _stable(low=-math.inf, value=math.nan, high=math.inf):
+def _stable(unit, low=-math.inf, value=math.nan, high=math.inf):
     """Return the range of a live parameter in which the steps of a program are stable, in words."""
-    least = f"above {short(low)}" if high == math.inf else f"from {short(low)} "
-    most = "" if high == math.inf else f"up to {short(high)}"
+    first, last = (" ".join(in_words(float(end), unit)).strip() for end in (low, high))
+    least = f"above {first}" if high == math.inf else f"from {first} "
+    most = "" if high == math.inf else f"up to {last}"
     return "" if low == -math.inf and high == math.inf else f"Steps are stable {least if low > -math.inf else ''}{most}"
 
 

@@ -100,7 +100,7 @@ class Run:
         own = {name: columns[name] for name in ("t", "x", "v", "F", "saturated", "gap", "overrun")}
         return Telemetry(
             **own, T=program.T * self.every, delay=delay, channels={c.name: columns[c.name] for c in program.outputs[1:]},
-            units={c.name: c.unit for c in program.outputs[1:]}, paddle=paddle, scene=program.name, parameters=values,
+            units=program.units, paddle=paddle, scene=program.name, parameters=values,
             fault=fault_words(self.fault, program.T), every=self.every, changes=tuple(changes),
         )  # fmt: skip
 

@@ -275,18 +275,18 @@ class SimulatedPaddle(Paddle):
 
     def _telemetry(self, program, linked, outputs):
         columns = {c.name: outputs[:, j] for j, c in enumerate(linked.outputs)}
-        units = {c.name: c.unit for c in linked.outputs}
+        units = program.units | linked.units
         x, v, F, code = columns.pop("x"), columns.pop("v"), columns.pop("F"), columns.pop("fault")
         fault = None
         if code.any():
             first = int(np.argmax(code > 0))
             fault = not_finite(program, code[first], first, self.T)
         limited = np.abs(F) >= self.force_max if self.force_max is not None else None
+        parameters = {c.name: a for c, a in zip(program.parameters, program.values, strict=True)}
         return Telemetry(
             t=np.arange(len(x)) * self.T, x=x, v=v, F=F, T=self.T, delay=self.delay, channels=columns,
-            units={name: units[name] for name in columns if name in units}, paddle=str(self), scene=program.name,
-            parameters={c.name: a for c, a in zip(program.parameters, program.values, strict=True)},
-            fault=fault, saturated=limited,
+            units={name: units[name] for name in (*columns, *parameters) if name in units}, paddle=str(self),
+            scene=program.name, parameters=parameters, fault=fault, saturated=limited,
         )  # fmt: skip
 
     def _line(self):

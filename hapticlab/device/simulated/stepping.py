@@ -156,13 +156,13 @@ class Stepping:
         changes : sequence of (float, dict)
             Time [s], as in the rows, and what was set from then on.
         """
-        paddle, units = self.paddle, {c.name: c.unit for c in self.program.outputs[1:]}
+        paddle = self.paddle
         begin = rows["t"][0] if len(rows["t"]) else 0.0
         channels = {name: column for name, column in rows.items() if name not in ("t", "x", "v", "F")}
         limited = np.abs(rows["F"]) >= paddle.force_max if paddle.force_max is not None else None
         return Telemetry(
             t=rows["t"] - begin, x=rows["x"], v=rows["v"], F=rows["F"], T=paddle.T, delay=paddle.delay, channels=channels,
-            units={**units, "intent": "m"}, paddle=str(paddle), scene=self.program.name, parameters=dict(values),
+            units={**self.program.units, "intent": "m"}, paddle=str(paddle), scene=self.program.name, parameters=dict(values),
             fault=self.fault, saturated=limited, changes=tuple((t - begin, numbers) for t, numbers in changes),
         )  # fmt: skip
 

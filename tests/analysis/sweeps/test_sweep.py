@@ -13,6 +13,7 @@ import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
 from hapticlab.analysis.records.energy import energy
 from hapticlab.analysis.sweeps.sweep import sweep
+from hapticlab.base.drawing import describe
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError, ParameterError, ProgramError
@@ -321,3 +322,18 @@ def test_bounces_that_shrink_slowly_are_not_called_calm(m, b, T, duration):
 def test_what_is_no_simulated_paddle_is_refused_in_words():
     with pytest.raises(AnalysisError, match=r"paddle = None; needs an hl.SimulatedPaddle"):
         sweep(wall(), None, k=[100.0, 200.0])
+
+
+def test_a_sweep_that_knows_nothing_says_so_and_shows_what_was_swept():
+    """0.2 s end before the handle has turned three times."""
+    swept = sweep(wall(), SimulatedPaddle(m=0.05, b=0.1, T=1e-3), 0.2, progress=False, k=[50.0, 100.0, 300.0], v=0.1)
+    assert np.isnan(swept.values).all()
+    assert "3 of 3 not known: faulted, or too short to decide" in swept._repr_html_()
+    assert {fact.name: fact for fact in swept._facts()}["values"].meaning.endswith("faulted or the run does not decide")
+    figure = swept.plot()
+    assert figure.axes[0].get_xlim()[0] <= 50 and figure.axes[0].get_xlim()[1] >= 300
+    assert describe(figure) == "Chatter amplitude [mm] over stiffness k [N/m], 50 to 300: not known anywhere."
+    partly = replace(swept, values=np.array([math.nan, 0.002, 0.003]))
+    assert partly.plot().axes[0].get_xlim()[0] <= 50 and "; 1 of 3 not known" in partly._sentence()
+    known = replace(swept, values=np.array([0.001, 0.002, 0.003]))
+    assert "not known" not in known._sentence() and "rises from 1 to 3" in describe(known.plot())
