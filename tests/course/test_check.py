@@ -246,7 +246,7 @@ def test_a_check_prints_what_the_code_printed_its_first_lines_and_the_verdict(ca
 
 
 def test_a_mistake_of_an_author_is_told_as_such(capsys, tmp_path, monkeypatch):
-    case = "Case({}, 2.0, slips={'two': 'A word is not a number;.'})"
+    case = "Case({}, 2.0, slips={'two': 'A word is not a number.'})"
     monkeypatch.chdir(make(tmp_path, f"LAB = Lab('98', '', 1, [Exercise('k', 'value', 1, cases=[{case}])])"))
     assert not hl.check("98.k", 3.0).passed
     assert "98.k: the check itself failed, which is not your mistake: ValueError" in capsys.readouterr().out

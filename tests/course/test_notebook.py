@@ -208,10 +208,13 @@ def test_checks_beside_the_notebook_come_before_those_of_the_package(folder):
         (lambda: Exercise("a", "text", points=1), "saved, not marked"),
         (lambda: Exercise("a", "choice", options={"a": ""}, cases=[Case({}, "b")]), "'b' is not one of the options a"),
         (lambda: Case(3, 4), "a case needs a dict"),
-        (lambda: Lab("01", "", 1, [Exercise("a"), Exercise("a")]), "twice;"),
+        (
+            lambda: Lab("01", "", 1, [Exercise("a"), Exercise("a")]),
+            "lab 01: a appears twice; each exercise needs a name of its own",
+        ),
         (lambda: Lab("13a", "", 1, []), "lab number '13a': needs two digits"),
         (lambda: Lab(1, "", 1, []), "lab number 1: needs two digits"),
-        (lambda: read(__file__), "is not a notebook;"),
+        (lambda: read(__file__), "is not a notebook; "),
     ],
 )
 def test_mistakes_of_an_author_are_told(made, words):

@@ -50,5 +50,5 @@ def test_fitts_law_comes_out():
 
 
 def test_what_is_no_target_is_refused():
-    with pytest.raises(AnalysisError, match="than half the width"):
+    with pytest.raises(AnalysisError, match="the distances larger than half the width"):
         Submovements(0.01, furthest=0.004)

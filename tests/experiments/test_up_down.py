@@ -106,7 +106,7 @@ def test_what_is_no_staircase_is_refused():
             Levels(**wrong)
     with pytest.raises(AnalysisError, match="0 <= skip < reversals"):
         UpDown(first=0.5, reversals=4)
-    with pytest.raises(AnalysisError, match="asking"):
+    with pytest.raises(AnalysisError, match="the estimate needs 6. Continue asking"):
         UpDown(first=0.5).estimate()
     with pytest.raises(AnalysisError, match="give per_step"):
         UpDown(first=0.5, weight=1.5).settles(Psychometric(0.2, 1.0))

@@ -75,7 +75,7 @@ def test_refusals_say_what_to_do():
     log = PADDLE.run(hl.laws.virtual_damper()(B=0), duration=0.2)
     with pytest.raises(AnalysisError, match="no push in 200 samples.*hl.identify.pushes"):
         hl.identify.hand(log, PADDLE)
-    with pytest.raises(AnalysisError, match="the paddle is not known..*hl.identify.paddle"):
+    with pytest.raises(AnalysisError, match=r"the paddle is not known\. .*hl\.identify\.paddle"):
         hl.identify.hand(log)
 
 

@@ -114,7 +114,7 @@ def test_where_a_slope_is_negative_nothing_is_proved_unless_the_energy_is_bounde
     paddle = hl.SimulatedPaddle(m=0.05, b=0.25, T=T)
     ledger = hl.passivity.ledger(paddle, K=(-900, 400))
     assert ledger.index > 0 and not ledger.passive and ledger.gain == np.inf
-    assert "is bounded below" in str(ledger)
+    assert "If it has one, give bounded=True" in str(ledger)
     k, c = hl.parameters("k c", units="N/m N/m", values=(400, 900))
     scene = hl.Scene(force=hl.when(hl.x(hl.n) > 0, k, -c) * hl.x(hl.n))
     assert hl.stability.local_stiffness(scene, -0.01, 0.01) == pytest.approx((-900, 400))

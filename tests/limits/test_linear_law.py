@@ -49,7 +49,7 @@ def test_two_laws_side_by_side():
     assert both.taps() == pytest.approx([3, 4, -3, 1]) and not np.isnan(both.stiffness)
     assert str(LinearLaw.of("zoh", K=5, B=-0.001, T=T)).endswith("F[n] = 4 x[n] + 1 x[n-1], T = 1 ms")
     assert LinearLaw(np.eye(1), np.ones(1), np.ones(1), 0.0, T, "sum").at(0.0) == np.inf
-    with pytest.raises(AnalysisError, match="sampling period"):
+    with pytest.raises(AnalysisError, match="the laws have T = 0.001 s and 0.002 s; both need the same sampling period"):
         LinearLaw.of("zoh", K=1, T=T) + LinearLaw.of("zoh", K=1, T=2 * T)
 
 

@@ -230,17 +230,17 @@ CHECKS = {
     ),
     "wrong inequality": (
         "hl.check('03.late_wall', hl.Scene(force=hl.when(x(n-1) <= x_o, k*(x(n-1) - x_o))))",
-        "reversed|turned|wrong way",
+        "condition is reversed",
         ">=",
     ),
     "wrong inequality, lab 04": (
         "hl.check('04.half_sample_wall', hl.Scene(force=hl.when(x(n) < x_o, k*(1.5*x(n) - 0.5*x(n-1) - x_o))))",
-        "reversed|turned|wrong way",
+        "condition is reversed",
         ">=",
     ),
     "wrong inequality, both walls": (
         "hl.check('02.two_walls', hl.Scene(force=hl.when(x(n) <= x_o, k*(x(n) - x_o)) + hl.when(x(n) >= -x_o, k*(x(n) + x_o))))",
-        "reversed|turned|wrong way",
+        "condition is reversed",
         ">=",
     ),
     "`if` in an answer": (

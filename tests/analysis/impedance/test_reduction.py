@@ -137,7 +137,7 @@ def test_a_reduction_asks_no_more_of_the_device():
 
 
 def test_masses_that_nobody_feels_are_not_in_it():
-    """A follower that the chain drives and that do not act on the handle in the changes neither impedance nor reduction."""
+    """A follower that the chain drives and that does not act back on it changes neither impedance nor reduction."""
     y, pull = hl.coordinate("y", unit="m"), hl.parameters("k_y m_y", units="N/m kg", values=(50, 0.1))
     plain = chain(3)
     last = plain.coordinates[-1]
@@ -161,7 +161,7 @@ def test_order_by_tolerance_and_the_printout():
 def test_what_is_refused():
     with pytest.raises(
         AnalysisError,
-        match="the tolerance of 0.05 over 0.1 to 100 Hz:.* with 1 mass, .* with 3 masses..*accept=True with masses=3",
+        match=r"outside the tolerance of 0.05 over 0.1 to 100 Hz: .* with 1 mass, .* with 3 masses\. .*accept=True with masses=3",
     ):
         reduction(chain(4), HELD, band=(0.1, 100), accept=True)
     with pytest.raises(AnalysisError, match="a NoneType has no m; needs a paddle"):
@@ -183,7 +183,7 @@ def test_scenes_that_are_no_network_of_masses():
     pull, between = k * (x(t) - z), k * (z - y)
     second = sp.Eq(m * y.diff(t, 2), between)
     one_way = hl.Scene(force=k * (x(t) - y), eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="one way")
-    with pytest.raises(AnalysisError, match="do not act on the handle in the"):
+    with pytest.raises(AnalysisError, match="do not act on the handle in the same way, so there is no network of masses"):
         reduction(one_way, HELD)
     active = hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(t, 2), pull - between - b * z.diff(t)), second], name="active")
     with pytest.raises(AnalysisError, match="damping is negative"):
@@ -219,5 +219,5 @@ def test_masses_that_move_as_one():
     one = reduction(scene, HELD)
     assert one.masses == 1 and one.largest < 1e-12
     assert one.scene.values == pytest.approx({"m_1": 0.12, "k_1": 3200}, rel=1e-9)
-    with pytest.raises(AnalysisError, match="fewer than 2 separate masses;"):
+    with pytest.raises(AnalysisError, match="fewer than 2 separate masses; "):
         reduction(scene, HELD, masses=2)

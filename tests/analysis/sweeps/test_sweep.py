@@ -262,7 +262,8 @@ def test_how_a_sweep_is_compiled():
     with pytest.raises(ProgramError, match="method = 'rk5'"):
         sweep(scene, PUSHED, b=[0.1], method="rk5")
     with pytest.raises(
-        ProgramError, match="K in it cannot be an axis of the sweep. Use method='taylor', or one call for each value"
+        ProgramError,
+        match="the motion, so K in it cannot be an axis of the sweep. Use method='taylor', or one call for each value",
     ):
         sweep(scene, PUSHED, K=[300.0, 400.0], method="exact", **options)
     hold = parameters("hold", units="N/m")
@@ -282,7 +283,9 @@ def test_an_exact_sweep_says_what_is_no_axis():
     scene = Scene(force=K * (x(n) - z), eom=[sp.Eq(m * z.diff(t, 2), K * (x(t) - z) - hl.when(z >= p, k * (z - p), 0))])
     given = {"metric": "peak_force", "duration": 0.05, "v": 0.3, "progress": False, "method": "exact"}
     assert len(set(sweep(scene, PUSHED, p_0=[1e-3, 2e-3], **given).values)) == 2
-    with pytest.raises(ProgramError, match="k in it cannot be an axis of the sweep. Use method='taylor',"):
+    with pytest.raises(
+        ProgramError, match="constants for the motion, so k in it cannot be an axis of the sweep. Use method='taylor',"
+    ):
         sweep(scene, PUSHED, k=[100.0, 200.0], p_0=[1e-3, 2e-3], **given)
 
 

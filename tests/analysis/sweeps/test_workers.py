@@ -145,7 +145,7 @@ def test_a_map_gets_the_chunks_in_lists_that_grow(monkeypatch):
 def test_a_map_of_promises_is_refused():
     with (
         ThreadPoolExecutor(1) as pool,
-        pytest.raises(hl.errors.AnalysisError, match=r"not futures..*client\.get_executor\(\)\.map"),
+        pytest.raises(hl.errors.AnalysisError, match=r"not futures\. .*client\.get_executor\(\)\.map"),
     ):
         swept(workers=lambda function, pieces: [pool.submit(function, piece) for piece in pieces])
 
@@ -222,7 +222,7 @@ def test_a_killed_process_is_replaced():
 
 def test_processes_that_die_again_and_again_are_given_up():
     with pytest.raises(
-        hl.errors.AnalysisError, match="ended 3 times in a row before they finished any point..*if __name__ == '__main__':"
+        hl.errors.AnalysisError, match=r"ended 3 times in a row before they finished any point\. .*if __name__ == '__main__':"
     ):
         list(spread(os._exit, [3, 3, 3], 2, threads=False))
 

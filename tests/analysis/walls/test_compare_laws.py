@@ -10,6 +10,7 @@ from hapticlab.rendering.wall_laws import LAWS, wall_law
 
 FREE = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3)
 K = 500.0  # wT = 0.1
+NAMES = f"needs names of {', '.join(LAWS)}."
 
 
 @pytest.fixture(scope="module")
@@ -48,10 +49,10 @@ def test_each_step_of_the_chapter_leaves_less(bounce):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"laws": "zho"}, "'zho'; needs names of zoh, half_sample,"),
-        ({"laws": [hl.wall()]}, "a Scene; needs names of zoh,.* hl.stability.wall_map"),
-        ({"laws": ()}, "needs one or more of zoh,"),
-        ({"laws": 3}, "a int;"),
+        ({"laws": "zho"}, f"laws contain 'zho'; {NAMES}"),
+        ({"laws": [hl.wall()]}, f"laws contain a Scene; {NAMES} For a scene, use hl.stability.wall_map"),
+        ({"laws": ()}, rf"laws = \(\); needs one or more of {', '.join(LAWS)}$"),
+        ({"laws": 3}, f"laws contain a int; {NAMES}"),
         ({"K": -1}, "a wall needs K > 0"),
         ({"K": "stiff"}, "a wall needs K > 0"),
         ({"speed": "fast"}, "finite speed > 0"),

@@ -197,7 +197,7 @@ def test_more_mass_than_the_handle_holds_is_refused(velocity, limit):
     paddle = hl.SimulatedPaddle(m=0.05, b=0, T=1e-3, hand=hl.Hand(push=1.0), counts_per_metre=counts)
     light = paddle.run(driven_mass()(m=0.98 * limit, k=3), duration=0.5, progress=False)
     assert np.abs(light.F).max() < 1.5
-    with pytest.raises(PaddleError, match=r"kg felt, and the mass of the handle itself is 0\.05 kg..*Put a coupler"):
+    with pytest.raises(PaddleError, match=r"kg felt, and the mass of the handle itself is 0\.05 kg\. .*Put a coupler"):
         paddle.run(driven_mass()(m=1.02 * limit, k=3), duration=0.5, progress=False)
 
 

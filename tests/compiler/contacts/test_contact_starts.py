@@ -31,7 +31,7 @@ def compiled(scene, law=None):
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
 def test_bodies_in_each_other_at_the_start_are_refused(law):
-    with pytest.raises(SceneError, match=r"top: gap = -h\(t\) is -0.04 m at the start: the bodies overlap..* its sign,"):
+    with pytest.raises(SceneError, match=r"top: gap = -h\(t\) is -0.04 m at the start: the bodies overlap\. .* its sign,"):
         compiled(scene(-h, law), law)
     compiled(scene(h, law)(h0=0), law)  # in touch
     with pytest.raises(SceneError, match=r"is -0.01 m at the start, with the handle at 0: the bodies overlap"):

@@ -259,7 +259,7 @@ def test_virtual_time_passes_for_one_thread(board):
     waiter.start()
     assert inside.wait(10)
     for act in (lambda: board.set(k=11), lambda: board.wait(0.1), board.stop, board.state):
-        with pytest.raises(PaddleError, match="another thread is waiting now..*pace=real"):
+        with pytest.raises(PaddleError, match=r"another thread is waiting now\. .*pace=real"):
             act()
     go.set()
     waiter.join(10)

@@ -209,7 +209,7 @@ def watched_write(port, data):
 def test_a_device_that_takes_nothing(line):
     with open_port(line[1]) as port:
         port.write_timeout = 0.01
-        with pytest.raises(PortError, match="no data for 0.01 s;") as caught:
+        with pytest.raises(PortError, match="the device accepted no data for 0.01 s; plug it in again") as caught:
             watched_write(port, bytes(1 << 20))
         assert caught.value.cause == "silent"
         port.reset_output_buffer()

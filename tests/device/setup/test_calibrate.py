@@ -87,7 +87,7 @@ class TestStops:
     def test_a_sensor_that_does_not_move_is_told(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())
         still = {"to the LEFT stop": at(0.0), "to the RIGHT stop": at(0.0)}
-        with pytest.raises(PaddleError, match="a sweep needs at least 50..*magnet"):
+        with pytest.raises(PaddleError, match=r"a sweep needs at least 50\. .*magnet"):
             calibrate(paddle, bench.Scripted(paddle, still), date=TODAY, only="stops")
 
     def test_a_handle_that_does_not_rest_is_asked_again(self):

@@ -101,10 +101,10 @@ def test_rows_of_nobody_are_left_out(tmp_path):
     [
         ("Login\nada\nAda \n", "2 rows of Login are 'ada'"),
         ("Login\nbob\n", "none of its columns 'Login' contains the id of a student, such as 'ada';"),
-        ("Login,login\nada,1\n", "it needs a different name for each"),
-        ("Login,\nada,1\n", "name for each column"),
-        ("", "not a CSV file whose first row has the names of"),
-        ('Login\n"ada\n', "not a CSV file whose first row has the"),
+        ("Login,login\nada,1\n", "it needs a different name for each column"),
+        ("Login,\nada,1\n", "it needs a different name for each column"),
+        ("", "not a CSV file whose first row has the names of the columns: "),
+        ('Login\n"ada\n', "not a CSV file whose first row has the names of the columns: "),
     ],
 )
 def test_a_roster_that_leaves_doubt_is_refused(tmp_path, text, words):

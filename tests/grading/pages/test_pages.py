@@ -91,8 +91,9 @@ def test_the_class_page_counts_what_the_reports_hold(written):
     assert f"30 submissions, {len(graded)} graded. Median {np.median(earned):.3g}, mean {earned.mean():.3g}" in page.words
     assert f"{(earned == 10).sum()} earned all" in page.words
     (told,) = [value for name, value in page.attributes if name == "aria-label" and "by points" in value]
-    for points in np.unique(earned):
-        assert f" {(earned == points).sum()} with {points:g}" in told
+    bands = {points: (earned == points).sum() for points in range(11)}
+    assert sum(bands.values()) == len(earned)
+    assert told == f"Number of students by points: {', '.join(f'{count} with {at}' for at, count in bands.items() if count)}."
     judged = [[one for one in report.exercises if one.kind not in ("prediction", "text")] for report in graded]
     right = {one.name: 0 for one in judged[0]}
     slips = {}
@@ -309,8 +310,11 @@ def test_an_answer_in_a_cell_that_failed_is_told_from_none(tmp_path):
     words = "no answer, and a cell failed"
     assert f"wall 2 points right 0 (0 %); wrong 0 (0 %); no answer 1 (50 %); {words} 1 (50 %)" in of_class.words
     assert f"○ no answer; △ {words} student mark wall ada 0 of 2 ○ ned 0 of 2 △ Marks" in of_class.words
-    assert of_class.words.endswith(FOOT)
-    assert [value for name, value in of_class.attributes if name == "aria-label"][1:3] == ["no answer", words]
+    ends = "Could not be graded None: every submission was graded. Stopped: out of time, memory or bounds None."
+    assert of_class.words.endswith(f"No known mistake was found. {ends} {FOOT}")
+    labels = [value for name, value in of_class.attributes if name == "aria-label"]
+    figures = ["Number of students by points: 2 with 0.", f"wall: 0 right, 0 wrong, 1 no answer, 1 {words}"]
+    assert labels == ["Marks of all students, exercise by exercise", "no answer", words, *figures]
     assert "Cells failed , and there is no answer: if it is in one of them, that is why." in ned.words
     assert ned.links == ["#e1", "#errors"] and ("id", "errors") in ned.attributes
     assert "there is no answer" not in ada.words
