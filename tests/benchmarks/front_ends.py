@@ -47,7 +47,6 @@ def jupyter(*command):
     return [sys.executable, "-m", *command, "--allow-root", "--no-browser", "--ip=127.0.0.1", "--IdentityProvider.token="]
 
 
-SERVED = [sys.executable, "-m", "marimo", "run", "view.py", "--headless", "--no-token"]
 #: name: the package, its command, the page, and what begins the cell there
 FRONT_ENDS = {
     "JupyterLab": ("jupyterlab", [*jupyter("jupyterlab"), "--port={port}"], "/lab/tree/view.ipynb?reset", True),

@@ -1,7 +1,7 @@
 """How high each lab's live views are on a laptop, and what axe-core finds in them: `python tests/benchmarks/lab_views.py`.
 
 Every lab runs as it is handed out, in JupyterLab and Chromium at 1280 x 800, with what `pip install -e ".[test]"` brings.
-A view is measured from its first button to its last line; the notebook's panel shows `PANEL` pixels of it.
+A view is measured from its first button to its last line.
 """
 
 import os
@@ -15,11 +15,12 @@ sys.path.insert(0, str(ROOT / "tests" / "browser"))
 from axe import IMPACTS, findings  # noqa: E402
 from lab import Lab, browsing, command  # noqa: E402
 
-#: of a notebook's panel in a window of 1280 x 800 [px]; and what the views aim at
+#: height of a notebook's panel in a window of 1280 x 800, and the height that views aim at [px]
 PANEL, AIM = 679, 620
 
 
 def main():
+    print(f"A notebook's panel shows {PANEL} px of a view; views aim at {AIM} px.\n")
     print("| lab | views | height [px] | width [px] | axe-core: light | dark |\n| --- | --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as folder, browsing() as browser, Lab(folder, browser) as lab:
         for source in sorted((ROOT / "labs").glob("*/*.ipynb")):

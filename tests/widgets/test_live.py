@@ -827,6 +827,17 @@ def test_a_scene_without_values_and_a_stranger_are_refused():
         hl.live(PADDLE, "wall")
 
 
+def test_a_slider_shows_its_number_in_a_unit_that_means_the_same_to_pint():
+    pint = pytest.importorskip("pint")
+    units = pint.UnitRegistry()
+    session = Stage(scene=hl.library.ball_on_the_paddle(), method="taylor").session
+    assert {span.unit_shown for span in session.spans} >= {"mm", "m/s²", "N s/m", ""}
+    for span in session.spans:
+        words = span.unit_shown.replace("²", "**2").replace("³", "**3").replace(" ", "*")
+        shown = units.Quantity(span.scale * span.value, words)
+        assert shown.to(span.unit.replace("^", "**")).magnitude == pytest.approx(span.value)
+
+
 def test_what_a_front_end_is_told_once():
     view = hl.live(PADDLE, WALL, sliders={"k": (100, 900)})
     about = view._session.description()
