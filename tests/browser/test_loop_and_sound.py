@@ -21,8 +21,8 @@ def page(browser):
 
 def rows(x, F, contact, t=None, **more):
     """Rows of frames of a wall, as the kernel makes them."""
-    samples = {"t": np.arange(len(x)) * T if t is None else t, "x": x, "F": F, "contact": contact, **more}
-    return Traces(T).add(samples).ravel().tolist()
+    samples = {"t": np.arange(len(x)) * T if t is None else t, "x": x, "F": F, **more}
+    return Traces(T).add(samples, contact).ravel().tolist()
 
 
 LOOP = """([rows, columns, touches, given = {}]) => {
