@@ -240,7 +240,7 @@ CHECKS = {
     ),
     "wrong inequality, both walls": (
         "hl.check('02.two_walls', hl.Scene(force=hl.when(x(n) <= x_o, k*(x(n) - x_o)) + hl.when(x(n) >= -x_o, k*(x(n) + x_o))))",
-        "condition is reversed",
+        "Both conditions are the wrong way round",
         ">=",
     ),
     "`if` in an answer": (
