@@ -274,7 +274,7 @@ LAB = Lab(
                 ),
             ),
             hint="Which eigenvalue decides after many flights? Eigenvalues may be complex or negative (numpy.linalg.eigvals).",
-            matters="It shows whether a small deviation dies out or grows from one impact to the next.",
+            matters="The largest eigenvalue shows whether a small deviation dies out or grows from one impact to the next.",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
     ),

@@ -67,7 +67,8 @@ LAB = Lab(
                 ),
             ),
             hint=(
-                "Which speed does the handle approach, and how does the difference from this speed decay? What happens before?"
+                "Which speed does the handle approach, and how does the difference from this speed decay? What happens to the "
+                "handle before it reaches this speed?"
             ),
             matters="Damping and dry friction slow a handle differently, so one coasting motion can separate them.",
         ),

@@ -77,7 +77,7 @@ LAB = Lab(
                 ),
                 Case({"answers": [0, 1], "start": 0.5, "factor": 1.25}, (0.5, 0.625)),
             ),
-            hint="At which level was the first answer given? Which answers before an answer have changed the level?",
+            hint="At which level was the first answer given? Which earlier answers have changed the level before a given answer?",
             matters="A staircase spends most of its trials near the threshold, where answers carry most information.",
         ),
         Exercise(
