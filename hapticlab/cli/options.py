@@ -123,7 +123,7 @@ def _add_assign(commands):
 
 
 def _add_grade(commands):
-    text = "grade submissions: run each in processes that know no answer, and judge what they give"
+    text = "grade submissions: run each in processes without the right answers, and judge what they return"
     made = _add_command(commands, "cli.grade_start.grade", text)
     words = "notebooks, scripts, archives, folders of these, or nbgrader's submitted tree"
     made.add_argument("submissions", metavar="SUBMISSION", nargs="+", help=words)
@@ -148,7 +148,7 @@ def _add_grade(commands):
     words = "that a submission may have at one time; from 2 on its code may also start programs (default: 1)"
     made.add_argument("--processes", type=_whole(1, "a number of processes"), default=1, metavar="N", help=words)
     made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
-    made.add_argument("--fresh", action="store_true", help="grade all anew, also what an earlier run wrote down")
+    made.add_argument("--fresh", action="store_true", help="grade all submissions again, also those already graded")
 
 
 def _add_board_commands(commands, shared):
@@ -164,7 +164,7 @@ def _add_board_commands(commands, shared):
         made[name] = _add_command(commands, f"cli.board.{name}", text, [shared] if name in ("ports", "doctor") else [])
         if name != "ports":
             made[name].add_argument("--port", metavar="URL", help="by default the one known board that is plugged in")
-    made["doctor"].add_argument("--no-person", action="store_true", help="skip what needs somebody at the handle")
+    made["doctor"].add_argument("--no-person", action="store_true", help="skip the checks that need a person at the handle")
     words = "try what works on this computer, without a board, in two minutes, and write one file to send"
     command = {"dest": "command", "action": "store_const", "const": "self_test.report.self_test"}
     made["doctor"].add_argument("--self-test", **command, help=words)

@@ -152,7 +152,7 @@ def describe(report):
     program, values = report["program"], report["parameters"]
     lines = [
         f"scene    {report['scene']}: " + (", ".join(f"{name} = {a:g}" for name, a in values.items()) or "no parameters"),
-        f"program  {program['instructions']} instructions a tick, T = {program['T_s']:g} s"
+        f"program  {program['instructions']} instructions per tick, T = {program['T_s']:g} s"
         + "".join(f", {program[fact]}" for fact in ("method", "dtype") if fact in program),
         *(f"         left out: {note}" for note in program["left_out"]),
         f"run      {report['samples']} samples, {report['duration_s']:g} s",

@@ -229,7 +229,7 @@ def _check_options(options):
     allowed = [name for name in inspect.signature(compile).parameters if name not in ("scene", "T", "velocity")]
     for name in options.keys() - {"engine"}:
         if name not in allowed:
-            raise PaddleError(f"{name} is no option of a live view, and none of hapticlab.compile: {', '.join(allowed)}")
+            raise PaddleError(f"{name} is not an option of a live view or of hapticlab.compile. Give one of {', '.join(allowed)}")
 
 
 def _front(session, kinds):

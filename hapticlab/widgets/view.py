@@ -153,7 +153,7 @@ def _span(paddle, over, name, span):
     """(low, high, value, unit) of a slider that moves something which the paddle has and the map is not over."""
     units = {name: unit for name, unit in (OTHERS | MORE).items() if name != "B"}
     if name not in units:
-        raise AnalysisError(f"{name}: nothing has that name; a slider moves one of {', '.join(units)}")
+        raise AnalysisError(f"{name} is not a quantity that a slider can move. Give one of {', '.join(units)}")
     if name in over:
         raise AnalysisError(f"{name} is an axis of the map; a slider moves something else")
     value = value_of(paddle, name)

@@ -789,7 +789,7 @@ def test_without_llvmlite_it_runs_too(monkeypatch):
         ({"time_scale": 0}, "0.1 slow motion"),
         ({"time_scale": "a"}, "time_scale = 'a'; a live view needs time_scale"),
         ({"rehearsal": lambda t: 0 * t}, "needs hl.people.Rehearsal"),
-        ({"foo": 1}, "foo is no option of a live view, and none of hapticlab.compile: method, "),
+        ({"foo": 1}, "foo is not an option of a live view or of hapticlab.compile. Give one of method, "),
         ({"time_scale": 100}, "needs time_scale >= 0.001 and <= 10"),
         ({"sliders": {"q": (0, 1)}}, "q is no live parameter"),
         ({"sliders": {"k": (5, 1)}}, "low < high"),

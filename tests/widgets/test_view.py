@@ -125,8 +125,8 @@ def test_a_notebook_shows_it(view):
 @pytest.mark.parametrize(
     ("sliders", "words"),
     [
-        ({"colour": (0, 1)}, "a slider moves one of B?"),
-        ({"B": (0, 1)}, "nothing has that name"),
+        ({"colour": (0, 1)}, "Give one of B?"),
+        ({"B": (0, 1)}, "B is not a quantity that a slider can move"),
         ({"counts_per_metre": (1e3, 1e4)}, "has no counts_per_metre"),
         ({"b": (1, 1)}, "low < high"),
         ({"b": 0.3}, r"b = 0.3; a slider needs \(low, high\)"),
