@@ -1,5 +1,8 @@
 """Whether the environment of a scene is touched: at a wall, inside a case that acts, in a contact; never by a spring alone."""
 
+from functools import reduce
+from operator import and_, or_
+
 import numpy as np
 import sympy as sp
 
@@ -54,12 +57,7 @@ def touching(scene, watched=()):
         if not known.keys() >= set(names):  # a record of another scene
             return np.full(len(samples["x"]), np.nan)
         with np.errstate(all="ignore"):
-            inside = [np.all([depth >= -CLOSE for depth in _alike(region, samples["x"])], axis=0)
-                      for region in values(*(known[name] for name in names))]  # fmt: skip
-        return (np.any(inside, axis=0) & (samples["F"] != 0)).astype(float)
+            inside = [reduce(and_, (depth >= -CLOSE for depth in region)) for region in values(*(known[name] for name in names))]
+        return (reduce(or_, inside) & (samples["F"] != 0)).astype(float)
 
     return touched
-
-
-def _alike(region, x):
-    return np.broadcast_arrays(x, *region)[1:]
