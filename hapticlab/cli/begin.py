@@ -69,7 +69,7 @@ def unknown(name):
     from difflib import get_close_matches  # opened by a mistake alone
 
     near = get_close_matches(name, [one for names in GROUPS.values() for one in names], 1, 0.5)
-    return f"{name!r} is not a command" + (f"; did you mean {near[0]}?" if near else "")
+    return f"{name!r} is not a command" + (f"; did you mean {near[0]}?" if near else ".")
 
 
 def lab_number(text):

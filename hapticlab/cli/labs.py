@@ -37,8 +37,10 @@ def labs(parser, options):
 
 def _wanted(parser, options):
     """Return the folder, and put labs that were named by number alone, as "6" or "06", with those of --lab."""
-    numbers = [lab_number(text) for text in options.wanted if text.isdecimal() and len(text) <= 2]
-    folders = [text for text in options.wanted if not (text.isdecimal() and len(text) <= 2)]
+    numbers = [lab_number(text) for text in options.wanted if text.isdecimal()]
+    folders = [text for text in options.wanted if not text.isdecimal()]
+    if wrong := [text for text in numbers if len(text) > 2]:
+        parser.error(f"{wrong[0]} is not a lab; labs have two digits. For a folder of that name, give ./{wrong[0]}")
     if len(folders) > 1:
         words = "give one, and labs by their numbers: hapticlab labs 02 06 DIR"
         parser.error(f"{' and '.join(folders)} are several folders; {words}")

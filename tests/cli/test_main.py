@@ -288,8 +288,10 @@ def test_a_run_that_left_events_out_says_so_in_its_report(tmp_path):
     ("arguments", "words"),
     [
         ((), "Begin here"),
-        (("lbs",), "'lbs' is not a command; did you mean labs?"),
+        (("lbs",), "'lbs' is not a command; did you mean labs? `hapticlab -h` lists the commands"),
+        (("xyzzy",), "'xyzzy' is not a command. `hapticlab -h` lists the commands"),
         (("labs", "one", "two"), "one and two are several folders"),
+        (("labs", "123"), "123 is not a lab; labs have two digits. For a folder of that name, give ./123"),
         (("--foo",), "unrecognized arguments: --foo. `hapticlab -h` lists"),
         (("run",), "FILE.py"),
         (("run", "nowhere.py"), "no such file"),

@@ -74,3 +74,5 @@ def test_the_held_force_begins_each_period_on_the_ideal_one():
 def test_a_wrong_name_is_answered_with_those_there_are():
     with pytest.raises(hl.HapticlabError, match="'lop' is not a drawing; there are paddle, loop, sample_and_hold, signs"):
         hl.devices.drawing("lop")
+    with pytest.raises(hl.HapticlabError, match=r"\[\] is not a drawing; there are paddle"):
+        hl.devices.drawing([])

@@ -77,7 +77,7 @@ def drawing(name: str) -> Drawing:
     >>> print(hl.devices.drawing("signs").title)
     Signs: to the right is positive
     """
-    if name not in SHEETS:
+    if not isinstance(name, str) or name not in SHEETS:
         raise CourseError(f"{name!r} is not a drawing; there are {', '.join(SHEETS)}.")
     sheet = SHEETS[name]
     return Drawing(name, sheet.TITLE, sheet.ALT, sheet.draw)

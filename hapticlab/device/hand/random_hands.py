@@ -65,6 +65,8 @@ def random_hands(
 
 def _ends(name, ends):
     """Return the logarithms of the two ends of a range."""
+    if np.shape(ends) != (2,):
+        raise PaddleError(f"{name} = {ends!r:.60}; a range of hands needs two numbers, (least, largest), each > 0 {UNITS[name]}")
     low, high = ends
     low = number(f"least {name}", low, UNITS[name], "a range of hands", above=0, error=PaddleError)
     high = number(f"largest {name}", high, UNITS[name], "a range of hands", least=low, error=PaddleError)

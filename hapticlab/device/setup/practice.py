@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...errors import PaddleError
 from ..board.serial_paddle import SerialPaddle
 from ..board.settings import nominal
 from ..hand.hand import Hand
@@ -66,6 +67,8 @@ class PractisingPerson(Person):
             answer = "88"  # mm, with a ruler
         elif "scale show" in question:
             answer = self.weigh()
+        elif not question.startswith("Press Enter, then move the handle"):  # of a doctor, who asks for nothing else
+            raise PaddleError(f"the simulated person of the practice board has no answer to: {question}")
         print(question, answer)
         return answer
 

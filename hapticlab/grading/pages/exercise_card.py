@@ -23,12 +23,13 @@ def card(one):
     >>> [line.partition(":</strong> ")[2] for line in card(one).split("</p>")[1:-1]]
     ['-2 N', 'The sign is wrong.', 'Who pushes?']
     """
-    told = {"wrong": _without_answer(one), "likely slip": one.slip, "hint": "" if one.words.startswith(RAISED) else one.hint}
+    told = {"wrong": without_answer(one), "likely slip": one.slip, "hint": "" if one.words.startswith(RAISED) else one.hint}
     rows = tuple((label, words) for label, words in told.items() if words)
     return Card("", "partly" if one.right else "wrong", f"{one.right} of {one.cases} cases right", rows=rows).html(_classes)
 
 
-def _without_answer(one):
+def without_answer(one):
+    """Return the words on a wrong answer without what was expected, and without the likely slip that is told beside them."""
     words = " ".join((one.words.replace(one.slip, "", 1) if one.slip else one.words).split())
     return EXPECTED.sub("", words).removesuffix(".").removesuffix(":")
 

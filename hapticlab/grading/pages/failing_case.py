@@ -1,16 +1,20 @@
 """The first wrong case of an exercise on a student's page: what was given, what came, and what was expected."""
 
 import re
+from functools import lru_cache
 
 import numpy as np
 
 from ...course.cards.case_figures import WrongCase, figures, is_curve, numbers
 from ...course.cards.page_text import pair, shown
+from ...course.labs import find_labs
 
 #: lists of more numbers are told by their first ones, tables of more too; a figure shows all
 MOST_NUMBERS, MOST_ROWS = 6, 24
-#: of names that mean the same in every lab, where no exercise says another unit
-UNITS = {
+#: what is given to a scene, whose words need not say it
+OF_SCENES = {"x": "m", "v": "m/s", "T": "s"}
+#: of names that mean the same in every lab that comes with the package, where no exercise says another unit
+OF_LABS = {
     "x": "m", "x_o": "m", "x_goal": "m", "z": "m", "l": "m", "D": "m", "gap": "m", "v": "m/s", "v0": "m/s", "v_goal": "m/s",
     "rate": "m/s", "g": "m/s^2", "t": "s", "T": "s", "h": "s", "m": "kg", "M": "kg", "F": "N", "F_max": "N", "force_max": "N",
     "k": "N/m", "K": "N/m", "b": "N s/m", "b_c": "N s/m", "b_low": "N s/m", "b_high": "N s/m", "b_added": "N s/m", "B": "N s/m",
@@ -50,10 +54,17 @@ def _told(name, asks):
 def given(one, lab):
     """Rows (name, value, unit) of what was given."""
     flat: dict = {}
+    units = OF_LABS if lab.title == _title(lab.number) else OF_SCENES if one.kind == "scene" else {}
     for name, value in one.failing.given.items():
         flat |= value if isinstance(value, dict) else {name: value}
     few = [(str(name), value) for name, value in [*flat.items()][:MOST_ROWS]]
-    return [(name, shown(value), unit_of(name, one, lab, UNITS.get(name, ""))) for name, value in few]
+    return [(name, shown(value), unit_of(name, one, lab, units.get(name, ""))) for name, value in few]
+
+
+@lru_cache
+def _title(number):
+    """Return the title of the lab of that number that came with the package."""
+    return next((folder.lab().title for folder in find_labs() if folder.number == number), None)
 
 
 def options(one, lab):

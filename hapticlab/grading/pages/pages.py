@@ -13,7 +13,7 @@ from ...course.exercise import NOTED
 from ...errors import CourseError
 from ..formats.words import state
 from .class_page import WORDS, broken, class_facts
-from .exercise_card import SHEET, card
+from .exercise_card import SHEET, card, without_answer
 from .failing_case import compared, drawn, given, options
 from .page_figures import bars, shares
 
@@ -32,6 +32,7 @@ NAMES = {
     "BLOCK": BLOCK, "MOST_CELLS": 40, "MOST_WRITTEN": 2000, "NOTED": NOTED, "WORDS": WORDS,
     "bars": bars, "broken": broken, "card": card,
     "compared": compared, "drawn": drawn, "given": given, "options": options, "shares": shares, "state": state,
+    "without_answer": without_answer,
 }  # fmt: skip
 
 

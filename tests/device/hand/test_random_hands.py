@@ -26,6 +26,8 @@ def test_a_seed_draws_the_same_hands_again():
     [
         ({"b": (0, 1)}, "least b = 0 N s/m; a range of hands needs least b > 0"),
         ({"m": (1, 0.1)}, "largest m = 0.1 kg; a range of hands needs largest m >= 1"),
+        ({"m": 0.1}, r"m = 0.1; a range of hands needs two numbers, \(least, largest\), each > 0 kg"),
+        ({"k": (1, 2, 3)}, r"k = \(1, 2, 3\); a range of hands needs two numbers"),
         ({"hands": 0}, "hands = 0; needs a whole number >= 1"),
     ],
 )

@@ -8,6 +8,12 @@ import hapticlab as hl
 from hapticlab.device.setup import sign_check
 
 
+def test_a_question_that_the_simulated_person_does_not_know_is_told():
+    _, person = hl.devices.practice_board()
+    with pytest.raises(hl.errors.PaddleError, match="no answer to: Move the handle slowly to the left stop and press Enter"):
+        person.ask("Move the handle slowly to the left stop and press Enter")
+
+
 @pytest.mark.always("1")
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_calibration_finds_the_constants_and_the_swapped_wires(seed, monkeypatch, capsys):

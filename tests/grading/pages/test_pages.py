@@ -15,6 +15,7 @@ from page_reader import ATTRIBUTES, TAGS, Page
 
 from hapticlab.course.cards.page_text import clean, file_name
 from hapticlab.course.exercise import Case, Exercise, Lab
+from hapticlab.course.labs import find_labs
 from hapticlab.errors import CourseError
 from hapticlab.grading.formats.words import state
 from hapticlab.grading.pages.pages import write_pages
@@ -288,9 +289,30 @@ def test_scalars_stand_in_a_table_with_units_and_what_differs_is_marked(tmp_path
     failing = Failing({"k": 200.0, "b": 1.5, "T": 1e-3}, {"leak": 0.1 + 0.2, "loss": 2.0}, {"leak": 0.3, "loss": 1.0}, "J", False)
     exercise = ExerciseReport("wall", "function", "F [N] at k [N/m]", 2.0, answered=True, cases=1, words="w", failing=failing)
     page = Page(write_pages([Report("ada", "02", "Walls", "w", exercises=(exercise,))], tmp_path, lab=LAB)[1])
-    assert "given value unit k 200 N/m b 1.5 N s/m T 0.001 s answer" in page.words, "b by the words of the other exercise"
+    assert "given value unit k 200 N/m b 1.5 N s/m T 0.001 answer" in page.words, "b by the words of the other exercise"
     assert "leak 0.3 0.3 J loss 2 ≠ 1 J" in page.words
     assert "<figure" not in page.source
+
+
+@pytest.mark.parametrize(("came", "kind", "units"), [
+    (True, "function", ("m", "s")), (False, "function", ("", "")), (False, "scene", ("m", "")),
+])  # fmt: skip
+def test_units_are_guessed_by_name_in_the_labs_that_came_with_the_package_alone(tmp_path, came, kind, units):
+    lab = next(folder.lab() for folder in find_labs() if folder.number == "08")
+    lab = lab if came else replace(lab, title="Heights", exercises=LAB.exercises)
+    one = ExerciseReport(
+        "q", kind, "", 2.0, answered=True, cases=1, words="w", failing=Failing({"x": 2.0, "h": 3.0}, 1, 2, "J", False)
+    )
+    page = Page(write_pages([Report("ada", "08", "Heights", "w", exercises=(one,))], tmp_path, lab=lab)[1])
+    assert f"x 2 {units[0]} h 3 {units[1]} answer".replace("  ", " ") in page.words
+
+
+def test_the_class_page_tells_of_a_stopped_answer_what_came_and_not_what_was_expected(tmp_path):
+    one = ExerciseReport(
+        "wall", "function", "", 2.0, answered=True, cases=1, words="-2 N, expected 2 N. It took 9 s", ended="time"
+    )
+    page = Page(write_pages([Report("ada", "02", "Walls", "w", exercises=(one,))], tmp_path, lab=LAB)[0])
+    assert "ada wall -2 N. It took 9 s" in page.words and "expected" not in page.words.split("Stopped:")[1]
 
 
 def test_of_a_value_the_answer_itself_is_not_told(tmp_path):
