@@ -17,6 +17,18 @@ from ..errors import AnalysisError, HapticlabError, UnitsError
 from .units import in_si
 
 
+def what_is(given: Any) -> str:
+    """What was given, by its class with an article.
+
+    Examples
+    --------
+    >>> what_is(3), what_is([])
+    ('an int', 'a list')
+    """
+    kind = type(given).__name__
+    return f"a{'n' * (kind[0] in 'aeioAEIO')} {kind}"
+
+
 def number(
     name: str,
     given: Any,
@@ -159,7 +171,7 @@ def having(given: Any, need: str, *names: str, error: type[HapticlabError] = Ana
     """The object given, which has these attributes; none of them may be None, which says that a number is not known."""
     lacking = [name for name in names if not hasattr(given, name)]
     if lacking:
-        raise error(f"a {type(given).__name__} has no {lacking[0]}; needs {need}")
+        raise error(f"{what_is(given)} has no {lacking[0]}; needs {need}")
     unknown = [name for name in names if getattr(given, name) is None]
     if unknown:
         raise error(f"the device has no {unknown[0]}; needs hl.Device({unknown[0]}=..., ...)")

@@ -70,13 +70,23 @@ def _entry(names, of_type, said):
     """What an entry of a docstring says of each of its names."""
     groups = _UNIT.findall(said)
     units = [unit.strip() for group in groups for unit in group.split(",")]
-    meanings = [_short(said)] + [""] * (len(names) - 1)
+    meanings = _meanings(names, said)
     if len(names) == len(groups) == len(units) > 1:  # each after what it measures: Mass [kg], damping [N s/m] and stiffness [N/m]
         meanings = [_short(re.split(r"(?<!Fig)(?<!Eq)[.;:,]\s", part.strip(" ,;"))[-1]) for part in _UNIT.split(said)[0:-1:2]]
+        meanings = [meaning or meanings[0] for meaning in meanings]
     elif len(units) < len(names):
         units = units[:1] * len(names) if units and ";" not in said.split("[")[0] else []
     units = units or _UNIT.findall(of_type)[:1] * len(names) or [""] * len(names)
     return {n: ("" if u == "1" else u, m) for n, u, m in zip(names, units, meanings, strict=False)}
+
+
+def _meanings(names, said):
+    """What each name means: what follows ``name``, or its part of "period and step", or else what is said of all."""
+    if said.startswith("``"):
+        own = dict(re.findall(r"(?:^|[;.] )``(\w+)`` ([^;.]+)", said))
+        return [_short(own.get(name, "")) for name in names]
+    parts = re.split(r",? and |, ", _short(said)) if len(names) > 2 else re.split(r",? and ", _short(said))
+    return [_short(part) for part in parts] if len(parts) == len(names) else [_short(said)] * len(names)
 
 
 def _short(said):
@@ -86,7 +96,7 @@ def _short(said):
     said = re.sub(r"^(?:[\s,;.]|[<>]=? *\d+|and\b|or\b)+", "", _UNIT.sub("", said))
     first = re.split(r"(?<!e\.g)(?<!Eq)(?<!Eqs)(?<!Fig)[.;:](?:\s|$)", said)[0]
     first = re.sub(r"\s+([,.;:])", r"\1", " ".join(first.split())).strip(" ,")
-    return first[:1].upper() + first[1:] if re.match("[a-z]{3,}( |$)", first) else first
+    return first[:1].upper() + first[1:] if re.match("([a-z]{3,}|as|at|is|of|up)( |$)", first) else first
 
 
 def facts(record: Any) -> list[Fact]:

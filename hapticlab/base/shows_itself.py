@@ -52,15 +52,21 @@ class ShowsItself:
     """
 
     _hidden: ClassVar[tuple[str, ...]] = ()
+    _own_line: ClassVar[bool] = False
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Give a class one line for ``repr``, where it says itself by ``__str__``: a dataclass keeps a method that is there.
+        """Give a class one line for ``repr``, where it says itself by ``__str__`` and inherits no ``__repr__`` written by hand.
 
+        A dataclass, which is made after this, keeps a method that stands in the class itself.
         IPython looks for both methods in one class after the other, so each has its own entry.
         """
         super().__init_subclass__(**options)
         cls._repr_pretty_ = ShowsItself._all_words  # type: ignore[attr-defined]
-        if "__repr__" not in cls.__dict__ and cls.__str__ is not object.__str__:
+        if "__repr__" in cls.__dict__:
+            cls._own_line = True
+        elif cls._own_line:
+            cls.__repr__ = cls.__repr__  # type: ignore[method-assign]
+        elif cls.__str__ is not object.__str__:
             cls.__repr__ = _in_one_line  # type: ignore[method-assign, assignment]
 
     def _sentence(self) -> str:
@@ -89,9 +95,13 @@ class ShowsItself:
     def _line(self) -> str:
         return f"{type(self).__name__}({self._sentence()})"
 
+    def _text(self) -> str:
+        """What stands below its cell where no HTML is shown: by default all words."""
+        return str(self)
+
     def _all_words(self, printer: Any, cycle: bool) -> None:
         """All words where it stands alone in a cell, its one line inside a list or a dict."""
-        lines = [repr(self)] if cycle or len(printer.stack) > 1 else str(self).split("\n")
+        lines = [repr(self)] if cycle or len(printer.stack) > 1 else self._text().split("\n")
         for number, line in enumerate(lines):
             if number:
                 printer.break_()
@@ -101,7 +111,8 @@ class ShowsItself:
         return f'<div style="overflow-x: auto">{self._head_html()}{self._body_html()}</div>'
 
     def _head_html(self):
-        return f"<p><strong>{escape(_upper(self._sentence()))}</strong></p>"
+        sentence = " ".join(self._sentence().split())  # a blank line, as in a name, would end the HTML inside Markdown
+        return f"<p><strong>{escape(_upper(sentence))}</strong></p>"
 
     def _is_open(self, fact):
         """Whether a fact stands in the table: numbers do, texts and arrays are folded."""
@@ -114,8 +125,9 @@ class ShowsItself:
         for fact in self._facts():
             text, unit = in_words(fact.value, fact.unit)
             if text and not are_records(fact.value):
-                target = shown if self._is_open(fact) and len(shown) < OPEN else folded
-                target.append((fact.name, text, unit, fact.meaning))
+                (shown if self._is_open(fact) else folded).append((fact.name, text, unit, fact.meaning))
+        if len(shown) > OPEN + 1:  # one line more takes no more room than the title of what is folded
+            shown, folded = shown[:OPEN], shown[OPEN:] + folded
         return shown, folded
 
     def _stands_open(self, grid):
@@ -125,12 +137,25 @@ class ShowsItself:
     def _body_html(self):
         rows, folded = self._rows()
         tables = [(name, grid) for name, grid in self._tables() if len(grid)]
-        told = [_fact_table(rows), "".join(_captioned(*one) for one in tables if self._stands_open(one[1]))]
+        told = [_fact_table(rows), "".join(self._captioned(*one) for one in tables if self._stands_open(one[1]))]
         told = [*(reversed(told) if isinstance(self, Tabular) else told), _drawn(self._figure)]
-        told += [_folded_table(*one) for one in tables if not self._stands_open(one[1])]
+        told += [
+            _folded(f"{_title(name) or 'Table'}: {len(grid)} rows", self._cut(name, grid))
+            for name, grid in tables
+            if not self._stands_open(grid)
+        ]
         told += [_folded("More facts", _fact_table(folded))]
         told += [_folded(title, f"<pre>{escape(text)}</pre>") for title, text in self._details()]
         return "".join(told)
+
+    def _captioned(self, name, grid):
+        caption = f'<p style="margin: 0.4em 0 0">{escape(_title(name))}</p>' if name not in ("", "rows") else ""
+        return caption + self._cut(name, grid)
+
+    def _cut(self, name, grid):
+        """A table with its first rows, and the attribute or the method that has all."""
+        first = next(iter(self._tables()))[0] == name and hasattr(self, "to_pandas")
+        return grid_html(grid, name if name.isidentifier() and hasattr(self, name) else "to_pandas()" if first else "")
 
 
 def _in_one_line(self: ShowsItself) -> str:
@@ -197,22 +222,14 @@ def _fact_table(rows):
     return f'<table style="{_TABLE}"><tbody>{"".join(lines)}</tbody></table>'
 
 
-def grid_html(grid: Grid, name: str = "") -> str:
-    """A table with a head that carries the units, cut to its first rows with a sentence on where the rest is."""
+def grid_html(grid: Grid, whole: str = "") -> str:
+    """A table with a head that carries the units, cut to its first rows with a sentence on the attribute that is whole."""
     heads = "".join(f'<th scope="col" style="{_CELL}">{escape(head)}</th>' for head in grid.heads)
     lines = "".join(f'<tr style="{_ROW}">{"".join(map(_cell, row))}</tr>' for row in grid.rows(ROWS))
     table = f'<table style="{_TABLE}"><thead><tr>{heads}</tr></thead><tbody>{lines}</tbody></table>'
-    more = f"<p>The first {ROWS} of {len(grid)} rows; <code>.{escape(name or 'to_pandas()')}</code> has all.</p>"
+    where = f"; <code>.{whole}</code> has all" if whole else ""
+    more = f"<p>The first {ROWS} of {len(grid)} rows{where}.</p>"
     return table + more * (len(grid) > ROWS)
-
-
-def _captioned(name, grid):
-    caption = f'<p style="margin: 0.4em 0 0">{escape(_title(name))}</p>' if name not in ("", "rows") else ""
-    return caption + grid_html(grid, name)
-
-
-def _folded_table(name, grid):
-    return _folded(f"{_title(name) or 'Table'}: {len(grid)} rows", grid_html(grid, name))
 
 
 def _cell(text):

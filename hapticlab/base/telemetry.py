@@ -12,6 +12,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..errors import AnalysisError
+from .arguments import what_is
 from .facts import Fact, facts, in_words
 from .grid import frame, labelled
 from .missed_events import depth_words, ends_inside
@@ -199,12 +200,15 @@ class Telemetry(ShowsItself):
         missed = np.count_nonzero(self.channels.get("unlocated", np.zeros(1)) > 0)
         left_out = f"; an event was not located in {missed} of them, see unlocated" if missed else ""
         left_out += f"; at the end bodies overlap by {depth_words(self, self.overlap[-1])}" if ends_inside(self) else ""
-        return f"Telemetry({len(self)} samples, {seconds}: {', '.join(self.columns)}{left_out}{stopped})"
+        return f"Telemetry({self._samples()}, {seconds}: {', '.join(self.columns)}{left_out}{stopped})"
+
+    def _samples(self):
+        return f"{len(self)} sample{'s' * (len(self) != 1)}"
 
     def _sentence(self):
         stopped = f"; fault: {self.fault}" if self.fault else ""
         of = f" of {self.scene}" if self.scene else ""
-        return f"{len(self)} samples{of}, {len(self) * self.T:g} s at T = {1e3 * self.T:g} ms{stopped}"
+        return f"{self._samples()}{of}, {len(self) * self.T:g} s at T = {1e3 * self.T:g} ms{stopped}"
 
     def _facts(self):
         listed = [Fact(name, getattr(self, name), self.units.get(name, ""), MEANINGS.get(name, "")) for name in self.columns]
@@ -311,9 +315,7 @@ def _column(name, values, samples, type):
 def check_record(log, asker, whole=True):
     """Refuse what is no Telemetry, with the call that makes one, and where it is to be whole one with lost samples."""
     if not isinstance(log, Telemetry):
-        raise AnalysisError(
-            f"{asker} was given a {type(log).__name__}; needs the record of a run, log = paddle.run(scene, duration=...)"
-        )
+        raise AnalysisError(f"{asker} was given {what_is(log)}; needs the record of a run, log = paddle.run(scene, duration=...)")
     if whole and log.gap.any():
         raise AnalysisError(
             f"{asker}: samples were lost {np.count_nonzero(log.gap)} times, first before t = {log.t[np.argmax(log.gap)]:g} "

@@ -25,7 +25,7 @@ class Grid(ShowsItself):
     Parameters
     ----------
     levels, thresholds : int
-        Points between the lowest and the highest level, >= 2.
+        Points from the lowest to the highest level, >= 2.
     slopes : sequence of float
         Slopes that are thought possible, equally likely, > 0; one alone fixes it.
 
@@ -60,7 +60,7 @@ class Psi(ShowsItself):
     Parameters
     ----------
     low, high : float
-        Levels that may be asked, and thresholds that are thought possible, equally likely in their logarithm.
+        Ends of the levels that may be asked; thresholds between them are thought equally likely in their logarithm.
     grid : Grid
         How many levels and thresholds between them, and which slopes: ``hl.people.Grid(levels=, thresholds=,
         slopes=)``.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..base.arguments import number
+from ..base.arguments import number, what_is
 from ..base.drawing import WARM, house_style, new_figure
 from ..base.shows_itself import ShowsItself
 from ..base.units import in_si
@@ -43,7 +43,7 @@ class OverCompensation(ShowsItself):
     ideal : CompensationLimit
         Its closed forms, of a short period and a narrow ``speed``.
     viscous, speed : float
-        Part of the viscous damping that is compensated; width of the sign [m/s].
+        Compensated part [1] of the viscous damping, and width of the sign [m/s].
     dry : array of shape (lanes,)
         Parts of the Coulomb friction that were simulated first.
     motion : array of shape (lanes,)
@@ -138,7 +138,7 @@ def over_compensation(
     """
     if not isinstance(paddle, SimulatedPaddle):
         raise AnalysisError(
-            f"paddle is a {type(paddle).__name__}; over-compensation runs in simulation only. Use hl.SimulatedPaddle(...)"
+            f"paddle is {what_is(paddle)}; over-compensation runs in simulation only. Use hl.SimulatedPaddle(...)"
         )
     ideal = compensation_limit(paddle, velocity=velocity if velocity and velocity.is_linear else None)
     number("coulomb", paddle.coulomb, "N", above=0, why="without dry friction there is nothing to compensate")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from ..base.arguments import choice
+from ..base.arguments import choice, what_is
 from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from ..scene.laws.chapter_laws import wall
@@ -111,7 +111,7 @@ def checked_laws(laws):
     names = tuple(laws) if isinstance(laws, Iterable) and not isinstance(laws, str) else (laws,)
     for name in names:
         if not isinstance(name, str) or name not in LAWS:
-            given = repr(name) if isinstance(name, str) else f"a {type(name).__name__}"
+            given = repr(name) if isinstance(name, str) else what_is(name)
             raise AnalysisError(f"laws contain {given}; needs names of {', '.join(LAWS)}. For a scene, use hl.stability.wall_map")
     if not names:
         raise AnalysisError(f"laws = {laws!r}; needs one or more of {', '.join(LAWS)}")

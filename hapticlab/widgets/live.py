@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.arguments import instance, number
+from ..base.arguments import instance, number, what_is
 from ..base.telemetry import Telemetry
 from ..compiler.tick.compile_scene import compile
 from ..device.board.serial_paddle import SerialPaddle
@@ -183,7 +183,7 @@ class LiveView:
     def replay(self, log=None):
         """Play a log in the view, the last one recorded by default; a board's motor is off meanwhile."""
         if log is not None and not isinstance(log, Telemetry):
-            raise PaddleError(f"replay of a {type(log).__name__}; needs a record: view.log, or hl.records.Telemetry.load(path)")
+            raise PaddleError(f"replay of {what_is(log)}; needs a record: view.log, or hl.records.Telemetry.load(path)")
         log = self._recorded() if log is None else log
         if not len(log):
             raise PaddleError("replay of a record without samples; record a while first, or give another one")

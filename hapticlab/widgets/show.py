@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..analysis.records.plot import plot
+from ..base.arguments import what_is
 from ..base.drawing import bundle, describe, forget
 from ..base.in_notebook import display, in_a_notebook
 from ..base.telemetry import Telemetry
@@ -66,8 +67,8 @@ def _drawn(given):
         return plot(given), str(given)
     if not callable(getattr(type(given), "plot", None)):
         if type(given).__module__.startswith("hapticlab."):
-            raise AnalysisError(f"hl.show of a {type(given).__name__}; that is words and numbers, without a picture: print it")
+            raise AnalysisError(f"hl.show of {what_is(given)}; that is words and numbers, without a picture: print it")
         raise AnalysisError(
-            f"hl.show of a {type(given).__name__}; needs a figure, as hl.plot(log) makes one, or a result that has .plot()"
+            f"hl.show of {what_is(given)}; needs a figure, as hl.plot(log) makes one, or a result that has .plot()"
         )
     return given.plot(), str(given)

@@ -9,6 +9,7 @@ import re
 import sys
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache, cached_property
+from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -178,7 +179,54 @@ def test_a_result_shows_its_sentence_its_facts_and_all_its_words(name, monkeypat
     sentence = next(words for words in house.words if words.strip())
     assert sentence[1:] == result._sentence()[1:]
     text = DisplayFormatter().format(result)[0]["text/plain"]
-    assert text == str(result)
+    assert text == str(result) or (name == "program" and text == result._text())
+
+
+def test_a_long_listing_is_kept_once_in_a_notebook():
+    program = hl.compile(hl.library.ball_on_the_paddle(), T=1e-3)
+    text, listing = DisplayFormatter().format(program)[0]["text/plain"].split("\n"), str(program).split("\n")
+    assert len(listing) > 500 and text[:60] == listing[:60]
+    assert text[60:] == [f"... and {len(listing) - 60} more lines: print(program) shows all"]
+    assert all(escape(line) in program._repr_html_().split("Listing</summary>")[1] for line in listing[-20:])
+
+
+def test_a_repr_that_a_base_writes_by_hand_stays():
+    class Marked(type(LOG)):
+        def __str__(self):
+            return repr(self)
+
+    @dataclass
+    class Named(ShowsItself):
+        K: float
+
+        def __str__(self):
+            return f"K = {self.K:g}"
+
+    class Stiff(Named):
+        def __str__(self):
+            return "stiff"
+
+    marked = Marked(t=[0], x=[0], v=[0], F=[0], T=1e-3)
+    assert str(marked) == repr(marked) == "Telemetry(1 sample, 0.001 s at T = 0.001 s: t, x, v, F)"
+    assert marked._sentence() == "1 sample, 0.001 s at T = 1 ms"
+    assert (repr(Named(2.0)), repr(Stiff(2.0))) == ("Named(K = 2)", "Stiff(stiff)")
+
+
+def test_one_run_over_one_value_is_no_plural():
+    swept = hl.sweep(hl.wall(), PADDLE, metric="energy", k=[100.0], v=0.1, duration=0.05, progress=False)
+    assert swept._sentence() == "energy over k (1 value): 1 run of 0.05 s"
+
+
+def test_a_name_of_several_lines_stays_within_its_html():
+    scene = hl.Scene(force=hl.parameters("k", units="N/m", values=300) * hl.x(hl.n), name="one\n\ntwo")
+    head = scene._repr_markdown_().split("$$")[0]
+    assert "one two" in head and head.count("\n\n") == 1
+
+
+def test_no_title_folds_a_single_line():
+    """A staircase has nine numbers, one more than stand open."""
+    html = hl.people.UpDown(first=0.4)._repr_html_()
+    assert "More facts" not in html and "<code>done</code>" in html
 
 
 def test_a_list_of_results_has_a_line_for_each():
@@ -293,8 +341,21 @@ def test_a_long_table_is_cut_with_a_sentence():
         def __str__(self):
             return f"{len(self.rows)} rows"
 
-    html = Many(tuple(Row(float(K)) for K in range(ROWS + 7)))._repr_html_()
-    assert html.count("<tr") == ROWS + 1 and f"The first {ROWS} of {ROWS + 7} rows" in html and "K [N/m]" in html
+    many = Many(tuple(Row(float(K)) for K in range(ROWS + 7)))
+    html = many._repr_html_()
+    assert html.count("<tr") == ROWS + 1 and "K [N/m]" in html
+    assert f"The first {ROWS} of {ROWS + 7} rows; <code>.rows</code> has all." in html
+
+    class Called(Many):
+        _hidden = ("rows",)
+
+        def _tables(self):
+            yield "left out", Grid.of(self.rows)
+            yield "right out", Grid.of(self.rows)
+
+    html = Called(many.rows)._repr_html_()
+    assert f"The first {ROWS} of {ROWS + 7} rows; <code>.to_pandas()</code> has all.</p><p" in html
+    assert html.count(f"The first {ROWS} of {ROWS + 7} rows.</p>") == 1 and "out</code>" not in html
 
 
 def test_units_come_from_the_docstring():
@@ -309,10 +370,21 @@ def test_units_come_from_the_docstring():
             [s], [m]
         reached : bool
             Whether it is there: at the wall.
+        T, delay : float
+            Sampling period and computational delay [s].
+        v_in, v_out : float
+            Speeds at those samples [m/s]; exact where known.
+        kept, dropped : int
+            ``dropped`` is left out; ``other`` words.
+        corner, K : array
+            The corners [m], [N/m].
         """
 
     assert documented(Handle) == {
         "m": ("kg", "Mass"), "b": ("N s/m", "Damping"), "t": ("s", ""), "x": ("m", ""), "reached": ("", "Whether it is there"),
+        "T": ("s", "Sampling period"), "delay": ("s", "Computational delay"),
+        "v_in": ("m/s", "Speeds at those samples"), "v_out": ("m/s", "Speeds at those samples"),
+        "kept": ("", ""), "dropped": ("", "Is left out"), "corner": ("m", "The corners"), "K": ("N/m", "The corners"),
     }  # fmt: skip
     known = {fact.name: fact for fact in facts(hl.stability_limit(PADDLE))}
     assert known["K"].unit == "N/m" and known["frequency"].unit == "Hz"

@@ -90,7 +90,7 @@ def test_a_result_and_a_record_plot_and_describe_themselves(capsys):
 
 
 def test_what_is_no_figure_and_no_text_is_refused():
-    with pytest.raises(hl.errors.AnalysisError, match="hl.show of a int; needs a figure"):
+    with pytest.raises(hl.errors.AnalysisError, match="hl.show of an int; needs a figure"):
         hl.show(3)
     with pytest.raises(hl.errors.AnalysisError, match="hl.show of a Requirements; that is words and numbers"):
         hl.show(hl.mechanics.requires(hl.wall()(k=300)))

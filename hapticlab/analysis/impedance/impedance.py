@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 import sympy as sp
 
+from ...base.arguments import what_is
 from ...compiler.algebra.graph import shown
 from ...compiler.prune.constant_coefficients import Coefficients
 from ...compiler.prune.dependence import FORCE, Dependence, part_of
@@ -97,7 +98,7 @@ def impedance(scene: Scene, frequency: ArrayLike | None = None) -> Impedance | N
     try:
         frequency = np.asarray(frequency, float)
     except (TypeError, ValueError):
-        what = f"a {type(frequency).__name__}"
+        what = what_is(frequency)
         raise AnalysisError(
             f"frequency is {what}; needs numbers in Hz, such as hl.passivity.impedance(scene, [1, 10, 100])"
         ) from None

@@ -38,7 +38,7 @@ class Reduction(ShowsItself):
     Attributes
     ----------
     scene, full : Scene
-        The reduced scene runs like any other. What the full one watched is not in it.
+        ``scene`` is the reduced one and runs like any other; what the full one watched is not in it.
     before, masses : int
         Masses that are felt in the full scene, and masses of the reduced one.
     band : (float, float)

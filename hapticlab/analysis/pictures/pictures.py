@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.arguments import what_is
 from ...base.drawing import house_style, new_figure
 from ...base.units import in_si
 from ...errors import AnalysisError
@@ -83,7 +84,7 @@ def _scene_of(name):
     name = getattr(name, "__name__", name)  # hl.library.detents itself
     if not isinstance(name, str):
         raise AnalysisError(
-            f"a {type(name).__name__} has no picture; hl.mechanics.picture draws a scene, or one of the library: 'detents'"
+            f"{what_is(name)} has no picture; hl.mechanics.picture draws a scene, or one of the library: 'detents'"
         )
     scene = CATALOGUE[name].scene()
     return name, scene, CATALOGUE[name].draw or Schematic(scene)

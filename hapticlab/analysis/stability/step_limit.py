@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -263,16 +264,41 @@ def _held(scene, points, J, T, method, substeps, hold):
 def _step_at(scene, point, method, T, J, seconds):
     """``h -> step matrices`` of a method at a point; of what is exact, none."""
     if method.locates:
-        return lambda h: np.array([exponential(J * one) for one in h])
+        return partial(_exponentials, J)
     if method.exact:  # what is not linear is driven by what is, and drives nothing of it
         rest = slopes_of(scene.set(point.mode), T, exact=True)
         J, seconds = rest.jacobian(point.values)[0], rest.seconds
     known = method.rest
     if not known.implicit_damping:
-        return lambda h: step_matrix(known, J, seconds, h)
-    damped, switches = slopes_of(scene, T, damped=True), scene.values_of(point.mode)
-    known = replace(known, implicit_damping=False)  # its rates have it already
-    return lambda h: step_matrix(known, damped.jacobian(point.values, h, len(h), **switches), seconds, h)
+        return partial(step_matrix, known, J, seconds)
+    return _DampedSteps(scene, point, known, T, seconds)
+
+
+def _exponentials(J, h):
+    return np.array([exponential(J * one) for one in h])
+
+
+@dataclass(frozen=True, eq=False)
+class _DampedSteps:
+    """Step matrices of a method whose rates damp implicitly; a copy in another process traces its slopes again."""
+
+    scene: Any
+    point: Any
+    method: Any
+    T: float
+    seconds: int
+
+    @cached_property
+    def slopes(self):
+        return slopes_of(self.scene, self.T, damped=True)
+
+    def __call__(self, h):
+        switches = self.scene.values_of(self.point.mode)
+        explicit = replace(self.method, implicit_damping=False)  # the rates have it already
+        return step_matrix(explicit, self.slopes.jacobian(self.point.values, h, len(h), **switches), self.seconds, h)
+
+    def __getstate__(self):
+        return {name: value for name, value in self.__dict__.items() if name != "slopes"}
 
 
 def _mode_limit(method, J, step, h, mode, point, quick=False):

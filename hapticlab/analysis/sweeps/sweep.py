@@ -81,10 +81,10 @@ class Sweep(ShowsItself, Guessed):
     _hidden = ("axes", "units", "unit", "metric")
 
     def _sentence(self):
-        of = " and ".join(f"{name} ({len(values)} values)" for name, values in self.axes.items())
+        of = " and ".join(f"{name} ({len(values)} value{'s' * (len(values) != 1)})" for name, values in self.axes.items())
         unknown = np.count_nonzero(np.isnan(self.values))
         left = f"; {unknown} of {self.values.size} not known: faulted, or too short to decide" if unknown else ""
-        return f"{self.metric} over {of}: {self.values.size} runs of {self.duration:g} s{left}"
+        return f"{self.metric} over {of}: {self.values.size} run{'s' * (self.values.size != 1)} of {self.duration:g} s{left}"
 
     def _facts(self):
         swept = [Fact(name, values, self.units.get(name, ""), "Swept") for name, values in self.axes.items()]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ...base.arguments import count, number
+from ...base.arguments import count, number, what_is
 from ...base.drawing import COLD, WARM, house_style, new_figure, plain_log
 from ...base.shows_itself import ShowsItself, Tabular
 from ...base.telemetry import Telemetry
@@ -197,9 +197,7 @@ def compare_laws(
 def _checked(paddle, laws, entries):
     """Return the names of the laws, or say what no comparison can be made of."""
     if not isinstance(paddle, SimulatedPaddle):
-        raise AnalysisError(
-            f"compare_laws simulates a bounce under every law; needs a SimulatedPaddle, not a {type(paddle).__name__}"
-        )
+        raise AnalysisError(f"compare_laws simulates a bounce under every law; needs a SimulatedPaddle, not {what_is(paddle)}")
     count("entries", entries)
     return checked_laws(laws)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.arguments import number
+from ...base.arguments import number, what_is
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError
 from ...scene.laws.chapter_laws import wall
@@ -205,7 +205,7 @@ class WallMaps:
 
     def _check(self, paddle, over, unusable):
         if not isinstance(paddle, SimulatedPaddle):
-            raise AnalysisError(f"a map simulates thousands of contacts; needs a SimulatedPaddle, not a {type(paddle).__name__}")
+            raise AnalysisError(f"a map simulates thousands of contacts; needs a SimulatedPaddle, not {what_is(paddle)}")
         if len(over) != 2 or over[0] != "K" or over[1] not in OTHERS:
             raise AnalysisError(f'over = {over}; needs ("K", other) with other one of {", ".join(OTHERS)}')
         if over[1].startswith("hand_") and paddle.hand is None:

@@ -38,8 +38,10 @@ class Cost(ShowsItself):
 
     Attributes
     ----------
-    name, board, T
+    name, board
         Of the program, and the board's :class:`Board`.
+    T : float
+        Period of the program [s].
     instructions, registers, bytes, outputs : int
         ``bytes`` as sent over the link.
     typical, bound : int

@@ -62,6 +62,8 @@ class Block:
         return sum(i.op not in LEAVES for i in self.instructions)
 
 
+#: lines of a listing that stand in a cell by themselves
+LISTED = 60
 #: what the facts of a program mean
 MADE = {
     "substeps": "Steps of the method in a tick", "margin": "Longest stable step over the step taken",
@@ -187,6 +189,12 @@ class Program(ShowsItself):
             yield "on boards", costs.on_boards(self)
         except ProgramError as problem:
             yield "on boards", Grid({"": [str(problem)]})
+
+    def _text(self):
+        """The listing, cut: a notebook file has all of it in the details already."""
+        lines = str(self).split("\n")
+        more = len(lines) - LISTED
+        return "\n".join(lines if more <= 0 else [*lines[:LISTED], f"... and {more} more lines: print(program) shows all"])
 
     def _details(self):
         if self.notes:

@@ -20,7 +20,7 @@ class Hold(ShowsItself):
     says : str
         What it does, in one sentence.
     order_of_x, order_of_v : int
-        Of the error of x(t) and of v(t) within a period, in T.
+        Order in T of the error within a period, of x(t) or v(t).
     cost : str
     source : str
     confused_with : str

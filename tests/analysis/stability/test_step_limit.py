@@ -1,5 +1,7 @@
 """Step limits predicted, against blow-ups found in runs, spectral radii of compiled ticks, and closed forms."""
 
+import pickle
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -178,6 +180,15 @@ def test_beside_the_exact_part_the_rest_alone_has_a_longest_step():
     limit = hl.stability.step_limit(scene, "exact+rk4", T=1e-3, at=at)
     assert limit.h_max == pytest.approx(hl.stability.step_limit(alone, "rk4", T=1e-3, at={"x": 0.0, "y": 0.0}).h_max, rel=1e-6)
     assert limit.h_max == pytest.approx(np.sqrt(8 * 0.05 / 500), rel=1e-3)
+
+
+@pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler_damped", "taylor", "exact"])
+def test_a_limit_goes_to_another_process(method):
+    limit = hl.stability.step_limit(coupler(), method, T=1e-3)
+    twin = pickle.loads(pickle.dumps(limit))
+    h = np.array([1e-4, 2e-3])
+    assert str(twin) == str(limit)
+    np.testing.assert_array_equal(twin.worst.step(h), limit.worst.step(h))
 
 
 def test_refusals():

@@ -52,7 +52,7 @@ def test_each_step_of_the_chapter_leaves_less(bounce):
         ({"laws": "zho"}, f"laws contain 'zho'; {NAMES}"),
         ({"laws": [hl.wall()]}, f"laws contain a Scene; {NAMES} For a scene, use hl.stability.wall_map"),
         ({"laws": ()}, rf"laws = \(\); needs one or more of {', '.join(LAWS)}$"),
-        ({"laws": 3}, f"laws contain a int; {NAMES}"),
+        ({"laws": 3}, f"laws contain an int; {NAMES}"),
         ({"K": -1}, "a wall needs K > 0"),
         ({"K": "stiff"}, "a wall needs K > 0"),
         ({"speed": "fast"}, "finite speed > 0"),
