@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import AnalysisError
+from .shows_itself import upper
 
 #: a light and a dark colour, told apart in grey print too
 WARM, COLD = "#cc5a1a", "#1a4b84"
@@ -227,7 +228,7 @@ def describe(figure):
     told = [_panel(axes) for axes in panels]
     if len(told) > 1:
         told = [f"Panel {number} of {len(told)}: {text}" for number, text in enumerate(told, 1)]
-    told += [_sentence(f"colour: {_span(axes, 'y')}") for axes in scales]
+    told += [_sentence(f"Colour: {_span(axes, 'y')}") for axes in scales]
     told += [_legend(figure.legends, panels)]
     return " ".join(filter(None, [_sentence(figure.get_suptitle()), *told]))
 
@@ -250,7 +251,7 @@ def _panel(axes):
     text += (": " if told else "") + "; ".join(told)
     marked = dict.fromkeys(word for word in (_plain(one.get_text()) for one in axes.texts) if re.search("[a-zA-Z]{3}", word))
     marked = [word for word in marked if word not in text and word not in {_plain(line.get_label()) for line in axes.lines}]
-    marked = _sentence(f"marked: {', '.join(marked)}") if marked else ""
+    marked = _sentence(f"Marked: {', '.join(marked)}") if marked else ""
     return " ".join(filter(None, [title, _sentence(text), marked, _legend([axes.get_legend()], [axes])]))
 
 
@@ -265,9 +266,14 @@ def _span(axes, side):
         return f"{label or 'cases'}, {', '.join(words)}"
     ends = [end for line in axes.lines if line.get_transform() == axes.transData for end in _ends(line, side)]
     low, high = sorted(getattr(axes, f"get_{side}lim")())
-    if side == "x" and ends:
+    if side == "x" and ends and not _is_map(axes):
         low, high = max(low, min(ends)), min(high, max(ends))
     return f"{label or 'values'}, {low:.3g} to {high:.3g}"
+
+
+def _is_map(axes):
+    """Whether axes hold an image or a mesh of values, which fills them, beyond the lines over it."""
+    return any(part.get_array() is not None for part in (*axes.images, *axes.collections))
 
 
 def _ends(line, side):
@@ -347,4 +353,4 @@ def _plain(words):
 
 def _sentence(words):
     words = _plain(words)
-    return (words[:1].upper() + words[1:]).rstrip(".") + "." if words else ""
+    return upper(words).rstrip(".") + "." if words else ""

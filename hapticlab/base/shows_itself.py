@@ -18,6 +18,8 @@ from .grid import Grid
 
 #: facts and rows that are shown before the rest is folded, or left to print and to_pandas
 OPEN, ROWS = 8, 20
+#: names of laws and holds that are one word, which begin a sentence as they are typed
+LAWS = ("zoh", "foh", "soh", "ellis", "deadbeat")
 #: numbers of one fact that stand in a line
 FEW = 6
 _LINE = "var(--jp-border-color2, rgba(128, 128, 128, 0.4))"
@@ -112,7 +114,7 @@ class ShowsItself:
 
     def _head_html(self):
         sentence = " ".join(self._sentence().split())  # a blank line, as in a name, would end the HTML inside Markdown
-        return f"<p><strong>{escape(_upper(sentence))}</strong></p>"
+        return f"<p><strong>{escape(upper(sentence))}</strong></p>"
 
     def _is_open(self, fact):
         """Whether a fact stands in the table: numbers do, texts and arrays are folded."""
@@ -200,12 +202,12 @@ def _aligned(lines):
     return "\\begin{array}{l}\n" + " \\\\\n".join(lines) + "\n\\end{array}"
 
 
-def _upper(sentence):
+def upper(sentence):
     """The sentence with a capital where it begins with a word, not with a symbol or a name of the code."""
     first = sentence.split(" ")[0]
     return (
         sentence[:1].upper() + sentence[1:]
-        if first.isalpha() and first.islower() and (len(first) > 1 or first == "a")
+        if first.isalpha() and first.islower() and (len(first) > 1 or first == "a") and first not in LAWS
         else sentence
     )
 

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..base.annotations import Array
+    from ..base.facts import Fact
     from ..device.device import AnyDevice
 
 #: a stiffness beside which the next cut has nothing to add
@@ -63,7 +64,8 @@ class PassivityMargin(ShowsItself):
     required : float
         Least damping [N s/m] with which the law is passive in every passive hand; inf where none is enough.
     frequency : float
-        That asks for it [Hz]; 0 for slow motion, the slower the more, and where all frequencies ask alike (``flat``).
+        Frequency that needs this damping [Hz]; 0 for slow motion, the slower the more, and where all frequencies need it alike
+        (``flat``).
     """
 
     law: LinearLaw = field(repr=False)
@@ -98,6 +100,9 @@ class PassivityMargin(ShowsItself):
     def plot(self) -> Figure:
         """Draw what each frequency asks for, what a pure sinusoid asks for, and what the device has."""
         return plot_passivity_margin(self)
+
+    def _facts(self) -> list[Fact]:
+        return [fact for fact in super()._facts() if fact.name != "frequency" or self.frequency]
 
     def __str__(self) -> str:
         verdict = "passive in every passive hand" if self.passive else "not passive"

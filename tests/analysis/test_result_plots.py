@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.base.drawing import STYLES, describe
+from hapticlab.base.drawing import STYLES, describe, new_figure
 from hapticlab.base.telemetry import Telemetry
 from hapticlab.compiler.boards.cost import cost as cost_of
 from hapticlab.vocabulary import public
@@ -225,3 +225,29 @@ def test_titles_legends_and_labels_lie_within_the_picture(draw):
     legends = [legend.get_window_extent() for legend in figure.legends]
     labels = [axes.xaxis.label.get_window_extent() for axes in figure.axes]
     assert not any(legend.overlaps(label) for legend in legends for label in labels)
+
+
+def test_over_a_map_the_words_give_the_extent_of_the_map_and_not_of_the_lines_over_it():
+    figure = new_figure(height=3)
+    axes = figure.subplots()
+    axes.pcolormesh([100.0, 200.0, 300.0], [1.0, 2.0], np.zeros((2, 3)), shading="nearest")
+    axes.plot([100, 200], [1, 2], label="a limit")
+    axes.set(xlim=(50, 350), xlabel="stiffness K [N/m]", ylabel="x [mm]")
+    assert describe(figure).startswith("x [mm] over stiffness K [N/m], 50 to 350: ")
+
+
+def test_words_begin_with_a_capital_and_symbols_and_names_of_laws_as_they_are():
+    for title, said in {"speed of a wall": "Speed", "y' = \u03bb y": "y'", "zoh against soh": "zoh", "x over t": "x"}.items():
+        figure = new_figure(height=2)
+        figure.subplots().set(title=title, xlabel="t", ylabel="y")
+        assert describe(figure).split()[0] == said
+
+
+def test_a_table_of_facts_agrees_with_the_sentence_above_it():
+    law = hl.laws.LinearLaw.of("zoh", K=100.0, T=1e-3)
+    alike = hl.passivity.margin(hl.Device(b=0.15, T=1e-3), law)
+    assert "at every frequency alike" in str(alike) and "frequency" not in [fact.name for fact in alike._facts()]
+    peak = hl.passivity.margin(hl.Device(b=0.15, T=1e-3), hl.laws.LinearLaw.of("backward_difference", K=100.0, T=1e-3))
+    assert {fact.name: fact.value for fact in peak._facts()}["frequency"] == pytest.approx(500)
+    worst = hl.passivity.worst_motion(hl.Device(b=0.2, T="1 ms"), hl.wall()(k=500), samples=2)
+    assert "draws 0.4999 mJ per cycle" in str(worst) and ">0.4999 mJ<" in worst._repr_html_()

@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 
 from ...base.arguments import choice, count, instance, number
+from ...base.facts import in_words
 from ...base.shows_itself import ShowsItself
 from ...compiler.tick.compile_scene import compile
 from ...device.device import known
@@ -67,8 +68,10 @@ class WorstMotion(ShowsItself):
         From each position to the next [s].
     drawn : float
         Work of the scene on the handle in a cycle [J].
-    viscous, friction : float
-        Energy that a damper of 1 N s/m, and the device's Coulomb friction, dissipate in a cycle [J].
+    viscous : float
+        Energy that a damper of 1 N s/m dissipates in a cycle [J].
+    friction : float
+        Energy that the device's Coulomb friction dissipates in a cycle [J].
     b_req : float
         Damping [N s/m] below which some motion that was tried draws energy from the device.
     b_device : float or None
@@ -177,9 +180,9 @@ class WorstMotion(ShowsItself):
     _hidden = ("program",)
 
     def __str__(self) -> str:
-        each = f"{1e6 * self.drawn:.4g} uJ per cycle of {1e3 * self.period:g} ms"
+        each = f"{' '.join(in_words(self.drawn, 'J'))} per cycle of {1e3 * self.period:g} ms"
         head = f"{self.scene}, T = {1e3 * self.program.T:g} ms: "
-        lost = "" if self.dissipated is None else f", and the device dissipates {1e6 * self.dissipated:.4g} uJ"
+        lost = "" if self.dissipated is None else f", and the device dissipates {' '.join(in_words(self.dissipated, 'J'))}"
         head += {
             None: "the worst motion found",
             True: "not passive. The worst motion found",

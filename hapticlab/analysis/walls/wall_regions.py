@@ -45,13 +45,13 @@ class WallMap(ShowsItself):
     amplitude : array of that shape
         Half the largest swing of the last quarter [m], 0 at rest; nan where the run cannot tell.
     undecided : bool array of that shape
-        The run cannot tell; the linear theory decided.
+        Points that the linear theory decides, because the run cannot tell.
     rows : array
         Values of the other quantity at which theory was computed.
     limits : dict of str to tuple of Limit
         "passivity", "stability" and bounds by name: the largest K at each of ``rows``; None where a bound does not hold.
     unusable : float
-        [m]
+        Half the swing above which a wall is unusable [m].
     duration : float
         Simulated time of a point [s], or a little more where T is an axis.
     units : dict of str to str
@@ -109,7 +109,7 @@ class WallMap(ShowsItself):
         """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.walls.wall_map_plot.plot_wall_map`."""
         return plot_wall_map(self)
 
-    _hidden = ("axes", "regions", "rows", "limits", "units")
+    _hidden = ("axes", "regions", "rows", "limits", "units", "seconds")
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` of regions and amplitude over K and the other quantity, SI; units in ``attrs["units"]``.
