@@ -228,3 +228,18 @@ def are_records(given: Any) -> bool:
         return False
     kinds = {type(one) for one in parts}
     return len(kinds) == 1 and is_dataclass(next(iter(kinds)))
+
+
+def card(head: str, rows: Mapping[str, str]) -> str:
+    """The text of a record; facts that are empty are left out.
+
+    Examples
+    --------
+    >>> print(card("wall: a spring", {"order": "1", "cost": "", "source": "Eq. (23.1)"}))
+    wall: a spring
+      order   1
+      source  Eq. (23.1)
+    """
+    told = {name: text for name, text in rows.items() if text}
+    width = max(map(len, told), default=0)
+    return "\n".join([head, *(f"  {name:<{width}}  {text}" for name, text in told.items())])

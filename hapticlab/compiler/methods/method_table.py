@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from ...base.card import card
+from ...base.facts import card
 from ...base.shows_itself import ShowsItself
 from ..ir.trace import Builder
 from . import stability_region

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...base.card import card
+from ...base.facts import card
 from ...base.shows_itself import ShowsItself
 from ...scene.notation.symbols import t, v, x
 from ..ir.options import choice

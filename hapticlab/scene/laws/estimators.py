@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ...base.card import card
+from ...base.facts import card
 from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import amount, number_of

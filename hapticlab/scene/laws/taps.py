@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from ...base.card import card
+from ...base.facts import card
 from ...base.shows_itself import ShowsItself
 
 
