@@ -6,7 +6,8 @@ from typing import Any
 
 from ..analysis.records.plot import plot
 from ..base.arguments import what_is
-from ..base.drawing import bundle, describe, forget
+from ..base.drawing import bundle, forget
+from ..base.figure_words import describe
 from ..base.in_notebook import display, in_a_notebook
 from ..base.telemetry import Telemetry
 from ..errors import AnalysisError

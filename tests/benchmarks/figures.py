@@ -11,7 +11,7 @@ import numpy as np
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.base.drawing import describe
+from hapticlab.base.figure_words import describe
 from hapticlab.cli.demo import draw, study
 from hapticlab.compiler.boards.cost import cost
 from hapticlab.experiments.reaching import reach

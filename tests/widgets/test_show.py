@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.base.drawing import describe, new_figure
+from hapticlab.base.drawing import new_figure
+from hapticlab.base.figure_words import describe
 from hapticlab.widgets import show as module
 
 pytest.importorskip("matplotlib")

@@ -13,7 +13,7 @@ import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
 from hapticlab.analysis.records.energy import energy
 from hapticlab.analysis.sweeps.sweep import sweep
-from hapticlab.base.drawing import describe
+from hapticlab.base.figure_words import describe
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError, ParameterError, ProgramError
