@@ -167,7 +167,7 @@ class Found(Tabular):
             above.legend(**FRAME)
             below.plot(t, 1e6 * (self.measured - self.fitted), ".", color="#000000", markersize=2)
             below.axhspan(-2e6 * self.sigma, 2e6 * self.sigma, color=COLD, alpha=0.15, label="2 standard deviations")
-            below.set(xlabel="time, records in sequence [s]", ylabel="residual [um]")
+            below.set(xlabel="time, records in sequence [s]", ylabel="residual [µm]")
             below.legend(loc="upper right", **FRAME)
         return figure
 

@@ -179,5 +179,5 @@ def test_it_prints_intervals_and_draws_residuals(found):
     assert found.dithered and "NOT DITHERED" not in text
     assert 0.03 in found["m"] and float(found["m"]) == found["m"].value
     above, below = found.plot().axes
-    assert above.get_ylabel().endswith("[mm]") and below.get_ylabel().endswith("[um]")
+    assert above.get_ylabel().endswith("[mm]") and below.get_ylabel().endswith("[µm]")
     np.testing.assert_allclose(above.lines[0].get_ydata(), 1e3 * found.measured)

@@ -100,6 +100,6 @@ def plot_worst_motion(motion):
             lost = motion.b_device * steps**2 / np.tile(motion.durations, 2) + rate * np.abs(steps)
             below.plot(1e3 * t, 1e6 * np.cumsum(np.r_[0.0, lost]), label="dissipated by the device", **STYLES[2])
         searched = textwrap.fill(f"searched: {motion.searched}", 72)
-        below.set(xlabel=f"time t [ms]\n{searched}", ylabel="energy [uJ]")
+        below.set(xlabel=f"time t [ms]\n{searched}", ylabel="energy [µJ]")
         below.legend(fontsize="small")
     return figure
