@@ -247,7 +247,7 @@ class Telemetry(ShowsItself):
         >>> log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(hl.wall(k=200), duration="10 ms", v=0.1)
         >>> table = log.to_pandas()
         >>> list(table.columns), table.attrs["units"]["F"]
-        (['x', 'v', 'F'], 'N')
+        (['x', 'v', 'F', 'saturated', 'gap', 'overrun'], 'N')
         """
         columns = {name: getattr(self, name) for name in (*self.columns, *FLAGS)}
         about = {name: getattr(self, name) for name in ("parameters", "changes", *ABOUT)}

@@ -9,7 +9,8 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.base.drawing import STYLES, describe, new_figure
+from hapticlab.base.drawing import STYLES, new_figure
+from hapticlab.base.figure_words import describe
 from hapticlab.base.telemetry import Telemetry
 from hapticlab.compiler.boards.cost import cost as cost_of
 from hapticlab.vocabulary import public
