@@ -114,7 +114,7 @@ class Telemetry(ShowsItself):
         Of what was recorded, and of parameters where the scene names them.
     paddle, scene : str
     parameters : dict of str to float
-        The scene's parameters, SI.
+        The scene's parameters; SI.
     fault : str or None
         What stopped the motor, when and why.
     saturated, gap, overrun : array of bool, shape (N,)
