@@ -68,8 +68,9 @@ def force():
 
 hl.Scene(force=force())
 """
-RECORD = "log = paddle.run(wall(k=500, x_o=0), duration=1.0)\nlog"
-COMPILED = 'paddle.compile(wall(k=300, x_o="10 mm"))'
+PRESSED = "pressed = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3, hand=hl.Hand(push=2.0))"
+RECORD = f"{PRESSED}\nlog = pressed.run(wall(k=500, x_o=0.01), duration=1.0)\nlog"
+COMPILED = 'hl.compile(wall(k=300, x_o="10 mm"), T=1e-3)'
 WALL = live("wall(k=500, x_o=0.01)")
 PENDULUM = live("hl.library.pendulum_on_the_handle()")
 SHOTS = (
