@@ -52,6 +52,7 @@ def looked_at(page):
             if name in boxes:
                 continue
             view.evaluate("(node, name) => node.setAttribute('data-looked-at', name)", name)
+            page.wait_for_timeout(700)  # one that was never seen before is laid out now
             boxes[name] = view.bounding_box()
             for each in findings(page, f'[data-looked-at="{name}"]', IMPACTS):
                 found[each["rule"], each["element"]] = each["impact"]
