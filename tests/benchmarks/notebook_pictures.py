@@ -136,12 +136,12 @@ def opened(lab, shot):
     if shot.lab:
         shutil.copy(lab.package / "labs" / shot.lab / f"{shot.lab}.ipynb", lab.notebooks)
         page = lab.open(shot.lab, width=WIDE, height=HIGH)
+        themed(page, dark=False)
         page.wait_for_timeout(6000)  # equations are being set
         page.locator(".jp-WindowedPanel-outer").first.evaluate("(node) => node.scrollTo(0, 0)")
         return page
     page = lab.open(shot.name, FIRST, *shot.cells, width=WIDE, height=HIGH)
-    if shot.dark:
-        command(page, "apputils:change-theme", theme="JupyterLab Dark")
+    themed(page, shot.dark)
     if shot.source:
         page.evaluate("() => window.jupyterapp.commands.execute('notebook:show-all-cell-code')")
     page.wait_for_timeout(5000)
@@ -158,6 +158,11 @@ def opened(lab, shot):
     last.evaluate("(node) => node.scrollIntoView({ block: 'start' })")
     page.wait_for_timeout(300)
     return page
+
+
+def themed(page, dark):
+    """Give JupyterLab its light or its dark theme, which stays for the next page."""
+    command(page, "apputils:change-theme", theme=f"JupyterLab {'Dark' if dark else 'Light'}")
 
 
 def beside(before, after):
