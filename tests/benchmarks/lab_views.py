@@ -52,7 +52,9 @@ def looked_at(page):
             if name in boxes:
                 continue
             view.evaluate("(node, name) => node.setAttribute('data-looked-at', name)", name)
-            page.wait_for_timeout(700)  # one that was never seen before is laid out now
+            laid_out = "(name) => document.querySelector(`[data-looked-at='${name}'] canvas`).style.height"
+            page.wait_for_function(laid_out, arg=name)  # one that was never seen before
+            page.wait_for_timeout(300)
             boxes[name] = view.bounding_box()
             for each in findings(page, f'[data-looked-at="{name}"]', IMPACTS):
                 found[each["rule"], each["element"]] = each["impact"]
