@@ -29,9 +29,8 @@ def shown(lab, name):
     return page
 
 
-def test_a_flick_with_the_mouse_tells_damping_and_friction(lab):
-    page = shown(lab, "view")
-    until(page, ".hl-status", "Running")
+def flick(page, wait):
+    """Lead the handle to the left, move it fast to the right, and release it on its way, so long after the last move [ms]."""
     x, y = grab(page, "canvas.hl-stage")
     for k in range(20):
         page.mouse.move(x - 8 * k, y)
@@ -39,13 +38,24 @@ def test_a_flick_with_the_mouse_tells_damping_and_friction(lab):
     ask(page, "view.record()")
     for k in range(1, 13):
         page.mouse.move(x - 152 + 22 * k, y)
-        page.wait_for_timeout(30)
+        page.wait_for_timeout(wait)
     page.mouse.up()
     eventually(page, "print(view._session.motion.held)", "False")
     rests = "log = view.log; print(bool(np.isnan(log.intent[-300:]).all() and np.ptp(log.x[-200:]) < 6e-5))"
     eventually(page, rests, "True")
+
+
+def test_a_flick_with_the_mouse_tells_damping_and_friction(lab):
+    page = shown(lab, "view")
+    until(page, ".hl-status", "Running")
+    for wait in (30, 10, 1, 20):  # a busy computer moves the pointer late: what is too slow is told, and done again
+        flick(page, wait)
+        said = ask(page, IDENTIFY)
+        if not said.startswith("hl.identify.coasting: the handle coasts"):
+            break
+        page.locator(".hl-stage").press("a")
     picture(page, "by-mouse-flick")
-    assert ask(page, IDENTIFY) == "True True True"
+    assert said == "True True True"
     page.close()
 
 
