@@ -52,8 +52,10 @@ def looked_at(page):
             if name in boxes:
                 continue
             view.evaluate("(node, name) => node.setAttribute('data-looked-at', name)", name)
-            laid_out = "(name) => document.querySelector(`[data-looked-at='${name}'] canvas`).style.height"
-            page.wait_for_function(laid_out, arg=name)  # one that was never seen before
+            for _ in range(30):  # one that was never seen before is laid out in a moment
+                page.wait_for_timeout(100)
+                if view.evaluate("(node) => node.querySelector('canvas')?.style.height"):
+                    break
             page.wait_for_timeout(300)
             boxes[name] = view.bounding_box()
             for each in findings(page, f'[data-looked-at="{name}"]', IMPACTS):
