@@ -17,6 +17,8 @@ from hapticlab.vocabulary import PAGES, public
 pytestmark = pytest.mark.interpreter
 
 ROOT = Path(__file__).parents[1]
+#: its searches take minutes where the interpreter is the only engine
+LONG = "docs/measuring.md"
 README = (ROOT / "README.md").read_text("utf-8")
 #: the pages for users, which README held until version 0.2; their examples run one after the other
 MANUAL = [
@@ -86,10 +88,16 @@ def test_boards_run(capsys):
 
 
 @pytest.mark.parametrize(
-    "path", [path for path in PAGES_THAT_RUN if path not in ("README.md", "docs/scenes.md", "docs/boards.md")]
+    "path", [path for path in PAGES_THAT_RUN if path not in ("README.md", "docs/scenes.md", "docs/boards.md", LONG)]
 )
 def test_pages_run(path, capsys):
     run_page(path)
+    assert capsys.readouterr().out
+
+
+@pytest.mark.machine_code
+def test_a_long_page_runs(capsys):
+    run_page(LONG)
     assert capsys.readouterr().out
 
 
