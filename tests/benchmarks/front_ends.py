@@ -79,13 +79,15 @@ def serving(command, folder):
 
 def tried(browser, address, run, look):
     """Return what the view says while a hand drags the handle into the wall."""
+    from playwright.sync_api import Error
+
     page = browser.new_page(viewport={"width": 1280, "height": 800})
     page.set_default_timeout(60_000)
     for _ in range(120):  # until the server is there
         try:
             page.goto(address)
             break
-        except Exception:
+        except Error:  # nobody answers yet
             page.wait_for_timeout(500)
     if run:
         page.locator(".jp-Cell").first.click()
