@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 UNITS = {"t": "s", "x": "m", "v": "m/s", "F": "N", "x_true": "m", "v_true": "m/s", "F_applied": "N", "x_switch": "m"}
 FLAGS = ("saturated", "gap", "overrun")
-ABOUT = ("scene", "paddle", "T", "delay", "every", "fault")
+ABOUT = ("scene", "paddle", "T", "delay", "sensor_delay", "every", "fault")
 #: what people try -> what a record has
 MEANT = {
     "time": "t", "times": "t", "position": "x", "pos": "x", "velocity": "v", "vel": "v", "speed": "v", "force": "F", "f": "F",
@@ -63,6 +63,19 @@ class PaddleProfile(ShowsItself):
     nominal : bool
         True where no constant was measured on the very device: a lab identifies them.
     source : str
+    sensor_delay, sensor_noise, sensor_flight : float
+        Of the sensor: its lag [s], the standard deviation of its noise at the handle [m], and how long a reading lies
+        between the ends of its range when an angle sensor begins anew [s].
+    duty_dead : float
+        Part of full duty below which the motor gives no force, 0 ... 0.5.
+    duty_25, duty_50, duty_75 : float or None
+        Parts of full duty, dead band included, at which the motor gives a quarter, half and three quarters of its force.
+    force_full : float or None
+        Force at full duty [N].
+    carrier : float or None
+        PWM carrier that the motor's driver can follow [Hz].
+    wiring : str
+        Name of the usual wiring of its sensor and its driver.
 
     Examples
     --------
@@ -81,6 +94,16 @@ class PaddleProfile(ShowsItself):
     T: float = 1e-3
     nominal: bool = True
     source: str = ""
+    sensor_delay: float = 0.0
+    sensor_noise: float = 0.0
+    sensor_flight: float = 0.0
+    duty_dead: float = 0.0
+    duty_25: float | None = None
+    duty_50: float | None = None
+    duty_75: float | None = None
+    force_full: float | None = None
+    carrier: float | None = None
+    wiring: str = ""
 
     def __str__(self) -> str:
         parts = [f"m = {self.m:g} kg", f"b = {self.b:g} N s/m", f"T = {self.T:g} s"]
@@ -88,6 +111,10 @@ class PaddleProfile(ShowsItself):
             parts.append(f"{1e6 / self.counts_per_metre:g} um per count ({self.rounding})")
         if self.coulomb:
             parts.append(f"Coulomb friction {self.coulomb:g} N")
+        if self.sensor_delay:
+            parts.append(f"sensor {1e3 * self.sensor_delay:g} ms late")
+        if self.duty_dead:
+            parts.append(f"no force below {100 * self.duty_dead:g} % duty")
         if self.force_max:
             parts.append(f"|F| <= {self.force_max:g} N")
         standing = "nominal, not measured on this device" if self.nominal else "measured"
@@ -123,6 +150,8 @@ class Telemetry(ShowsItself):
         Periods from one row to the next; above 1 the link carried no more. ``T`` is then the time between rows.
     changes : tuple of (float, dict)
         What was set while it ran: the time [s] from which it holds, and the parameters, SI.
+    sensor_delay : float
+        How long before a sample the handle was where ``x`` says [s], as far as it is known.
 
     Examples
     --------
@@ -152,6 +181,7 @@ class Telemetry(ShowsItself):
     overrun: np.ndarray | None = None
     every: int = 1
     changes: tuple[tuple[float, dict[str, float]], ...] = ()
+    sensor_delay: float = 0.0
 
     def __post_init__(self) -> None:
         samples = len(self.t)
@@ -213,7 +243,8 @@ class Telemetry(ShowsItself):
     def _facts(self):
         listed = [Fact(name, getattr(self, name), self.units.get(name, ""), MEANINGS.get(name, "")) for name in self.columns]
         raised = [Fact(name, getattr(self, name), "", MEANINGS[name]) for name in FLAGS if getattr(self, name).any()]
-        rest = [fact for fact in facts(self) if fact.name in ("T", "delay", "every", "paddle", "parameters", "changes")]
+        told_last = ("T", "delay", "sensor_delay", "every", "paddle", "parameters", "changes")
+        rest = [fact for fact in facts(self) if fact.name in told_last]
         told = {
             "parameters": self._with_units(self.parameters),
             "changes": "\n".join(f"after {' '.join(in_words(t, 's'))}: {self._with_units(set_)}" for t, set_ in self.changes),

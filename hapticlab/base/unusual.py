@@ -22,6 +22,7 @@ DEVICE = {
     "m": (5.0, "the handle of a paddle has a mass of about 0.05 kg", "g"),
     "T": (0.1, "a hand feels each sample of more than 0.1 s as a step", "ms"),
     "delay": (1.0, "a force comes about 0.001 s after its sample", "ms"),
+    "sensor_delay": (1.0, "a sensor lags by less than 0.002 s", "ms"),
     "b": (1e3, "a paddle's own damping is about 0.1 N s/m", "N s/m"),
     "duration": (3600.0, "a run takes about 2 s", "ms"),
 }

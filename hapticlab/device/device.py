@@ -19,12 +19,16 @@ if TYPE_CHECKING:
 #: whatever a limit takes first
 AnyDevice: TypeAlias = "Device | Paddle | PaddleProfile"
 
-_UNITS = {"m": "kg", "b": "N s/m", "T": "s", "delay": "s", "coulomb": "N", "counts_per_metre": "1/m"}
+_UNITS = {
+    "m": "kg", "b": "N s/m", "T": "s", "delay": "s", "coulomb": "N", "counts_per_metre": "1/m",
+    "sensor_delay": "s",
+}  # fmt: skip
 _ABOVE_ZERO = ("m", "T", "counts_per_metre")
-_NEVER_UNKNOWN = ("delay", "coulomb")
+_NEVER_UNKNOWN = ("delay", "coulomb", "sensor_delay")
 _WHY = {
     "b": "its damping dissipates the energy that the hold generates",
     "delay": "a force cannot come before its sample",
+    "sensor_delay": "a sensor cannot show a position before the handle is there",
     "coulomb": "friction opposes motion",
 }
 
@@ -45,6 +49,8 @@ class Device(ShowsItself):
         Sampling period [s], > 0.
     delay : float or text
         Computational delay [s], >= 0.
+    sensor_delay : float or text
+        Lag of the sensor [s], >= 0. A limit adds it to the delay: a force from a position read late is a late force.
     coulomb : float or text
         Coulomb friction [N], >= 0.
     counts_per_metre : float or text, optional
@@ -74,6 +80,7 @@ class Device(ShowsItself):
     counts_per_metre: float | None = None
     velocity: str = "backward_difference"
     hand: Hand | None = None
+    sensor_delay: float = 0.0
 
     if TYPE_CHECKING:  # it takes texts and keeps floats
 
@@ -88,6 +95,7 @@ class Device(ShowsItself):
             counts_per_metre: Number | None = None,
             velocity: str = "backward_difference",
             hand: Hand | None = None,
+            sensor_delay: Number = 0.0,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -114,7 +122,8 @@ class Device(ShowsItself):
 def known(device: AnyDevice, *names: str, or_none: str = "") -> tuple[Any, ...]:
     """The numbers of these names, of a paddle, its profile or a :class:`Device`; a number that is missing is refused in words.
 
-    A paddle on a board has those that its board keeps. A profile has no delay and no hand.
+    A paddle on a board has those that its board keeps. A profile has no delay and no hand. The delay is that from where
+    the handle is to the force that follows from it: the sensor's lag and the computational delay together.
 
     Parameters
     ----------
@@ -132,13 +141,24 @@ def known(device: AnyDevice, *names: str, or_none: str = "") -> tuple[Any, ...]:
     given = getattr(device, "device", device)
     having(given, _CURE, *(name for name in names if name not in _OPTIONAL))
     values = {name: getattr(given, name, _DEFAULTS[name]) for name in (*names, *or_none.split())}
+    if "delay" in values:
+        values["delay"] = total_delay(given)
     checked = _UNITS.keys() - {name for name, value in values.items() if value is None}
     return tuple(_checked(name, value, AnalysisError) if name in checked else value for name, value in values.items())
 
 
+def total_delay(device):
+    """The time from where the handle is to the force that follows from it, less the hold [s].
+
+    Sampling late by so much and giving the force as early as before is what giving it late by the sum is.
+    """
+    delay, lag = getattr(device, "delay", 0.0), getattr(device, "sensor_delay", 0.0)
+    return delay + lag if lag else delay
+
+
 _CURE = "a paddle, as hl.SimulatedPaddle(...), or hl.Device(m=..., b=..., T=...)"
 _DEFAULTS = {f.name: f.default for f in fields(Device)}
-_OPTIONAL = {"delay", "coulomb", "counts_per_metre", "hand", "velocity"}
+_OPTIONAL = {"delay", "sensor_delay", "coulomb", "counts_per_metre", "hand", "velocity"}
 
 
 def _checked(name, given, error):

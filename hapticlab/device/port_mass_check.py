@@ -18,6 +18,7 @@ import numpy as np
 
 from ..base.roots import root
 from ..errors import PaddleError
+from .device import total_delay
 
 
 def largest_port_mass(*, m, T, delay=0.0, velocity="backward_difference"):
@@ -76,7 +77,8 @@ def check_port_mass(program, paddle):
     m = getattr(paddle, "m", None) or getattr(getattr(paddle, "settings", None), "m", None)
     if felt is None or not m:
         return
-    limit = largest_port_mass(m=m, T=paddle.T, delay=getattr(paddle, "delay", paddle.T), velocity=program.facts["velocity"])
+    delay = total_delay(paddle) if hasattr(paddle, "delay") else paddle.T
+    limit = largest_port_mass(m=m, T=paddle.T, delay=delay, velocity=program.facts["velocity"])
     if not felt < limit:
         raise PaddleError(
             f"{program.name}: the constraint on the handle makes {felt:.4g} kg felt, and the mass of the handle itself is "

@@ -139,7 +139,7 @@ def _resting(paddle):
     if paddle.hand is None:
         raise PaddleError("a display needs a hand that feels it. Give hl.SimulatedPaddle(..., hand=hl.Hand('grip'))")
     hand = replace(paddle.hand, intent=None, push=0.0, push_noise=0.0)
-    return Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0)), hand
+    return Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0, sensor_delay=0.0)), hand
 
 
 def _one_period(handle, hand, display):

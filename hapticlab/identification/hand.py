@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base.telemetry import Telemetry, check_record
 from ..device.board.serial_paddle import SerialPaddle
+from ..device.device import total_delay
 from ..device.hand.hand import Hand
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
@@ -114,7 +115,7 @@ def identify_hand(
             "hl.identify.hand: the paddle is not known. Give device=, a PaddleProfile or found.profile() of hl.identify.paddle"
         )
     own = {name: float(getattr(device, name, 0.0)) for name in ("m", "b", "coulomb")}
-    own["delay"] = float(getattr(device, "delay", source.delay))
+    own["delay"] = float(total_delay(device if hasattr(device, "delay") else source))
     windows = _windows(source, window)
     quantum = 0.0 if counts_per_metre is None else 1 / abs(counts_per_metre)
     y = np.concatenate([source.x[a:b] for a, b in windows])

@@ -197,9 +197,10 @@ def _evaluated(kept, lines, drive, paddle, exact, place, scene, ideal, simulated
     else:
         other = response(-lines_in(F, lines) * hold, s * X, r)
     Hx, Hv = law_at(exact, place, s.imag * paddle.T)
+    seen = np.exp(-s * paddle.sensor_delay) if simulated else 1.0  # a board's record has the position as its sensor reads it
     left = int(np.count_nonzero(own == 0.0))
     return MeasuredImpedance(
-        s.imag / (2 * np.pi), found, hold * (Hx + s * Hv) / s, _ideal(scene, ideal, s), other, drive,
+        s.imag / (2 * np.pi), found, hold * seen * (Hx + s * Hv) / s, _ideal(scene, ideal, s), other, drive,
         (paddle.m * s + paddle.b) if simulated else None, left, _distortion(own, first), _about(drive, simulated, first, len(x)),
     )  # fmt: skip
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..base.arguments import having, instance, number
 from ..base.shows_itself import ShowsItself
+from ..device.device import total_delay
 from ..device.live_parameters import named_values
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
@@ -216,7 +217,7 @@ def largest_stiffness(
 def _program(paddle, scene, judged):
     """The wall with the motor's push beside it, guarded; compiled once, as only parameters' values change."""
     force = parameters("pressed", units="N", values=0.0, ranges=(-math.inf, math.inf))
-    periods = whole_and_fraction(getattr(paddle, "delay", 0.0), paddle.T)[0]
+    periods = whole_and_fraction(total_delay(paddle), paddle.T)[0]
     limits = {"energy_max": judged.energy_max, "speed_max": speed_limit(paddle, judged.speed_max), "periods": periods}
     return paddle.program(guarded(replace(scene, force=scene.force - force), **limits, keeps=math.exp(-paddle.T / FORGETS)))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...device.device import total_delay
 from ...errors import AnalysisError
 from ...scene.notation.symbols import delay, lag_of, v, x
 from ..stability.operating_points import TRAVEL
@@ -101,7 +102,7 @@ class Bench:
     def limits(self) -> Limits:
         """Of stability and passivity, for all settings: over a paddle's travel, or further where the motions go further."""
         reach = max(float(np.abs(known.motion.at(known.t)[0]).max()) for known in self.runs)
-        return Limits(self.scene, max(reach, TRAVEL), self.delay)
+        return Limits(self.scene, max(reach, TRAVEL), float(total_delay(self.paddle)))
 
     @functools.cached_property
     def same(self):

@@ -18,7 +18,7 @@ from .workers import number_of, spread
 #: lanes of one call of an engine: few enough for every worker to get some
 LANES = 1024
 #: of a paddle, what lanes may differ in
-COLUMNS = ("m", "b", "T", "delay", "counts_per_metre", "coulomb", "force_max", "hand.m", "hand.b")
+COLUMNS = ("m", "b", "T", "delay", "counts_per_metre", "coulomb", "force_max", "sensor_delay", "hand.m", "hand.b")
 #: what the measure forgets between the parts of a run
 AFRESH = {"measure.largest": 0.0, "measure.least": 1e300}
 
@@ -180,7 +180,8 @@ def _in_one_period(paddle, columns):
         )
     ratio = paddle.T / columns["T"]
     new = {name: a for name, a in columns.items() if name != "T"}
-    powers = {"m": 2, "b": 1, "delay": 1, "B": 1, "start.v": -1} | ({"hand.m": 2, "hand.b": 1} if paddle.hand else {})
+    powers = {"m": 2, "b": 1, "delay": 1, "sensor_delay": 1, "B": 1, "start.v": -1}
+    powers |= {"hand.m": 2, "hand.b": 1} if paddle.hand else {}
     for name, power in powers.items():
         owner = paddle.hand if name.startswith("hand.") else paddle
         own = getattr(owner, name.removeprefix("hand."), 0.0)

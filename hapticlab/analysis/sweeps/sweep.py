@@ -173,8 +173,8 @@ def sweep(
         friction. With method="exact", parameters of the scene that are not an axis are constants.
     **values : float or array of shape (n,)
         SI, or texts with a unit. An array is an axis, a single number only sets the value. Names: the scene's
-        parameters; of the paddle T, m, b, delay, counts_per_metre, coulomb, force_max, noise; x and v, where the handle
-        starts.
+        parameters; of the paddle T, m, b, delay, counts_per_metre, coulomb, force_max, noise, sensor_delay; x and v, where the
+        handle starts.
 
     Returns
     -------

@@ -14,6 +14,7 @@ from ...device.simulated.plant import decided
 #: what a sweep may change about a simulated paddle, and its unit
 PADDLE_AXES = {
     "T": "s", "m": "kg", "b": "N*s/m", "delay": "s", "counts_per_metre": "1/m", "coulomb": "N", "force_max": "N", "noise": "m",
+    "sensor_delay": "s",
 }  # fmt: skip
 START_AXES = {"x": "m", "v": "m/s"}
 #: each of their values asks for a program, or for inputs, of its own
@@ -125,14 +126,15 @@ class Grid:
         self.points = int(np.prod(self.shape))
         own = {name: a for name, a in axes.items() if name in PADDLE_AXES}
         # refuses what lies out of range: the ends, a delay beside each T, and the least m beside the longest T
-        for fixed in ({"m": np.min, "T": np.max}, {"delay": np.min}, {"delay": np.max}, {}):
+        ends = ({"delay": end, "sensor_delay": end} for end in (np.min, np.max))
+        for fixed in ({"m": np.min, "T": np.max}, *ends, {}):
             for end in (np.min, np.max):
                 self.paddle = replace(paddle, **{name: fixed.get(name, end)(a).item() for name, a in own.items()})
 
     def groups(self):
         """Return the points as a list of Points, each of one program and one set of inputs."""
         rubbing = np.max(self.axes.get("coulomb", self.paddle.coulomb)) > 0
-        names = (*_OWN_PROGRAM, "delay", "coulomb", *(("m", "b") if rubbing else ()), *self.lengths)
+        names = (*_OWN_PROGRAM, "delay", "sensor_delay", "coulomb", *(("m", "b") if rubbing else ()), *self.lengths)
         slow = [name for name in self.axes if name in names]
         axes = {name: self.axes[name] for name in (*slow, *(name for name in self.axes if name not in slow))}
         shape = [len(axes[name]) for name in slow]

@@ -12,6 +12,7 @@ from ...base.arguments import count, number, what_is
 from ...base.drawing import COLD, WARM, house_style, new_figure, plain_log
 from ...base.shows_itself import ShowsItself, Tabular
 from ...base.telemetry import Telemetry
+from ...device.device import total_delay
 from ...device.simulated.closed_loop import link, load_linked
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError
@@ -178,7 +179,7 @@ def compare_laws(
     speed = number("speed", speed, "m/s", "an entry", above=0, what="a finite speed")
     M = paddle.m + (paddle.hand.m if paddle.hand else 0.0)
     starts = -(APPROACH + (np.arange(entries) + 0.5) / entries) * speed * paddle.T
-    ticks = math.ceil(2 * math.pi * math.sqrt(M / K) / paddle.T) + 3 * APPROACH + 2 * math.ceil(paddle.delay / paddle.T)
+    ticks = math.ceil(2 * math.pi * math.sqrt(M / K) / paddle.T) + 3 * APPROACH + 2 * math.ceil(total_delay(paddle) / paddle.T)
     exact = [hybrid_wall(paddle, K=K, duration=ticks * paddle.T, x=start, v=speed) for start in starts]
     bounces, refused = [], {}
     for name in laws:
@@ -214,7 +215,8 @@ def lane_logs(scene, paddle, starts, speed, ticks, engine="auto"):
         own = {name: columns.pop(name) for name in ("x", "v", "F", "fault")}
         if own.pop("fault").any():
             raise AnalysisError(f"{program.name}: a force or state was not finite")
-        logs.append(Telemetry(t=np.arange(ticks) * paddle.T, T=paddle.T, delay=paddle.delay, channels=columns, **own))
+        own |= {"delay": paddle.delay, "sensor_delay": paddle.sensor_delay}
+        logs.append(Telemetry(t=np.arange(ticks) * paddle.T, T=paddle.T, channels=columns, **own))
     return logs
 
 

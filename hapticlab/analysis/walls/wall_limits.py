@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from ...device.device import Device
+from ...device.device import Device, total_delay
 from ...errors import AnalysisError
 from ...limits.affine_law import affine_law
 from ...limits.bounds import abbott_okamura_limit, diolaiti_limit, gil_limit
@@ -39,7 +39,7 @@ class ChapterLimits:
         if law == "half_sample" and paddle.velocity == "backward_difference":
             law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
         found = {
-            "passivity": _passivity(Device(b=paddle.b, T=paddle.T, delay=paddle.delay), B, law),
+            "passivity": _passivity(Device(b=paddle.b, T=paddle.T, delay=total_delay(paddle)), B, law),
             "stability": stability_limit(paddle, law=self.law, B=B),
         }
         for name in self.bounds:

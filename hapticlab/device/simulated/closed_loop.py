@@ -12,6 +12,8 @@ from ...compiler.ir.cache import Shared, content, instructions
 from ...compiler.ir.program import Channel, Program
 from ...compiler.ir.trace import Builder, cast, equal, floor, select
 from ...errors import PaddleError
+from .motor import Motor, is_distorted
+from .plant import NOWHERE
 from .unused_states import drop_unused_states
 
 #: closed loops that are kept, weighed as :data:`hapticlab.compiler.tick.compile_scene.PROGRAMS` are
@@ -42,9 +44,9 @@ def link(program, paddle, measure=None):
     Program
         Parameters: the scene's, then those of ``paddle.plant_values()``. Inputs: those of ``paddle.inputs(ticks)``.
         Outputs without measure: x, v, F (zero from a fault on), the watched channels, then x_true and v_true under an
-        encoder or noise,
-        F_applied under a whole sample of delay, x_switch under a fraction of one, and fault: 0, or 1 where F is not
-        finite, or 2 + the position of the state that is not. Until the first force arrives the motor gives none.
+        encoder, noise or a sensor that lags, F_applied under a whole sample of delay or a motor that gives another force,
+        x_switch under a fraction of a sample, and fault: 0, or 1 where F is not finite, or 2 + the position of the state
+        that is not. Until the first force arrives the motor gives none.
 
     Raises
     ------
@@ -110,6 +112,8 @@ class _Loop:
         self.real = program.outputs[0].type
         self.encoder = paddle.counts_per_metre is not None
         self.noisy = paddle.noise > 0
+        self.measured = paddle.velocity == "measured"
+        self.distorted = is_distorted(paddle)
         ramp = (("intent", "m"),) * self.plant.spring + (("intent.rate", "m/s"),) if self.plant.ramp else ()
         names = ramp + (("noise", "m"),) * self.noisy + (("hand.push_noise", "N"),) * self.plant.shake
         self.inputs = tuple(Channel(name, unit, "f64") for name, unit in names)
@@ -118,13 +122,19 @@ class _Loop:
         self.outputs = ()
 
     def _device_parameters(self):
-        if self.encoder or self.noisy:
+        if not self.measured:
             yield Channel("plant.rate", "1/s", self.real)
         if self.encoder:
             yield Channel("plant.counts_per_metre", "1/m", "f64")
             yield Channel("plant.metres_per_count", "m", self.real)
         if self.paddle.force_max is not None:
             yield Channel("plant.force_max", "N", "f64")
+        if self.plant.readings:
+            yield Channel("sensor.age", "s", "f64")
+            yield Channel("sensor.T", "s", "f64")
+        if self.distorted:
+            yield Channel("motor.force_full", "N", "f64")
+            yield from (Channel(f"motor.duty_{k}", "1", "f64") for k in (0, 25, 50, 75))
         yield Channel("start.x", "m", "f64")
         yield Channel("start.v", "m/s", "f64")
 
@@ -134,7 +144,8 @@ class _Loop:
         yield Channel("plant.v", "m/s", "f64")
         for k in range(self.plant.whole + self.plant.split):
             yield Channel(f"plant.F_{k + 1}", "N", "f64")
-        if self.encoder or self.noisy:
+        yield from (Channel(f"sensor.x_{k + 1}", "m", "f64") for k in range(self.plant.readings))
+        if not self.measured:
             yield Channel("sensed.x", "m", self.real)
         yield Channel("fault", "1", "f64")
         yield Channel("tick", "1", "i32")
@@ -145,11 +156,11 @@ class _Loop:
         groups = {"param": self.parameters, "input": self.inputs, "state": self.states.values() if states else ()}
         return {op: {c.name: builder.leaf(op, k, c.type) for k, c in enumerate(group)} for op, group in groups.items()}
 
-    def _sense(self, p, inputs, x, v, before):
-        """The handle as the scene senses it; before is the position sensed last, None at the first sample."""
-        if not (self.encoder or self.noisy):
+    def _sense(self, p, inputs, x, v, read, before):
+        """The handle as the scene senses it: what the sensor read last, and the position sensed before, None at first."""
+        if self.measured:
             return {"x": cast(x, self.real), "v": cast(v, self.real), "x_true": x, "v_true": v}
-        seen = x + inputs["noise"] if self.noisy else x
+        seen = read + inputs["noise"] if self.noisy else read
         if self.encoder:
             counts = seen * p["plant.counts_per_metre"]
             counts = floor(counts if self.paddle.rounding == "floor" else counts + 0.5)
@@ -171,11 +182,13 @@ class _Loop:
         leaves = self._leaves(builder, states=False)
         p = leaves["param"]
         x, v = p["start.x"], p["start.v"]
-        sample = self._sense(p, leaves["input"], x, v, None)
+        readings = [x - v * (p["sensor.age"] + k * p["sensor.T"]) for k in range(self.plant.readings)]
+        sample = self._sense(p, leaves["input"], x, v, readings[-1] if readings else x, None)
         _, scene = self._scene(builder, self.program.init, p, sample, ())
         new = dict.fromkeys(self.states, builder.const(0.0, "f64"))
         new.update({f"scene.{c.name}": s for c, s in zip(self.program.states, scene, strict=True)})
         new.update({"plant.x": x, "plant.v": v, "tick": builder.const(0, "i32")})
+        new.update({f"sensor.x_{k + 1}": reading for k, reading in enumerate(readings)})
         new["fault"] = _fault(new["fault"], scene, 1.0 + len(self.program.outputs))
         if "sensed.x" in new:
             new["sensed.x"] = sample["x"]
@@ -188,7 +201,8 @@ class _Loop:
         builder = Builder("f64")
         leaves = self._leaves(builder, states=True)
         p, inputs, old = leaves["param"], leaves["input"], leaves["state"]
-        sample = self._sense(p, inputs, old["plant.x"], old["plant.v"], old.get("sensed.x"))
+        read = [old[f"sensor.x_{k + 1}"] for k in range(self.plant.readings)]
+        sample = self._sense(p, inputs, old["plant.x"], old["plant.v"], [old["plant.x"], *read][-1], old.get("sensed.x"))
         scene = [old[f"scene.{c.name}"] for c in self.program.states]
         outputs, scene = self._scene(builder, self.program.tick, p, sample, scene)
         watched = {c.name: o for c, o in zip(self.program.outputs[1:], outputs[1:], strict=True)}
@@ -196,12 +210,15 @@ class _Loop:
         F = self._limit(p, cast(outputs[0], "f64"))
         # Forces computed earlier and not yet felt, the newest first; a fault silences them all.
         past = [old[f"plant.F_{k + 1}"] for k in range(self.plant.whole + self.plant.split)]
-        forces = [select(equal(fault, 0.0), force, 0.0) for force in (F, *past)]
+        given = self._motor(p).force(F) if self.distorted else F
+        forces = [select(equal(fault, 0.0), force, 0.0) for force in (given, *past)]
         applied, before = forces[self.plant.whole], past[-1] if self.plant.split else None
         hand = [inputs.get(name, 0.0) for name in ("intent", "intent.rate", "hand.push_noise")]
-        x_switch, x, v = self.plant.step(p, old["plant.x"], old["plant.v"], before, applied, *hand)
+        x_seen, x_switch, x, v = self.plant.step(p, old["plant.x"], old["plant.v"], before, applied, *hand)
         new = {f"scene.{c.name}": s for c, s in zip(self.program.states, scene, strict=True)}
         new.update({f"plant.F_{k + 1}": forces[k] for k in range(len(past))})
+        read.insert(0, old["plant.x"] if self.plant.seen == NOWHERE else x_seen)
+        new.update({f"sensor.x_{k + 1}": read[k] for k in range(self.plant.readings)})
         new.update({"plant.x": x, "plant.v": v, "fault": fault, "sensed.x": sample["x"]})
         new["tick"] = builder.emit("iadd", old["tick"], builder.const(1, "i32"))
         sample.update(watched | {"F": F, "F_applied": applied, "x_switch": x_switch, "x_next": x, "v_next": v})
@@ -212,9 +229,13 @@ class _Loop:
             self.outputs = tuple(self.measure.outputs)
         else:
             self.outputs = tuple(self._output_channels())
-            shown = sample | {"F": forces[0], "fault": fault}  # what the motor gives: none after a fault
+            asked = select(equal(fault, 0.0), F, 0.0) if self.distorted else forces[0]
+            shown = sample | {"F": asked, "fault": fault}  # none after a fault
             results = [shown[c.name] for c in self.outputs]
         return builder.block(results, [new[name] for name in self.states])
+
+    def _motor(self, p):
+        return Motor(p["motor.force_full"], [p[f"motor.duty_{k}"] for k in (0, 25, 50, 75)] + [1.0])
 
     def _limit(self, p, F):
         if self.paddle.force_max is None:
@@ -227,10 +248,10 @@ class _Loop:
         yield Channel("v", "m/s", self.real)
         yield Channel("F", "N", "f64")
         yield from (c for c in self.program.outputs[1:] if c.name not in ("x", "v", "F"))
-        if self.encoder or self.noisy:
+        if not self.measured:
             yield Channel("x_true", "m", "f64")
             yield Channel("v_true", "m/s", "f64")
-        if self.plant.whole:
+        if self.plant.whole or self.distorted:
             yield Channel("F_applied", "N", "f64")
         if self.plant.split:
             yield Channel("x_switch", "m", "f64")

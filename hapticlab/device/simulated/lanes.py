@@ -5,7 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from .plant import values
+from .motor import is_distorted, knots
+from .plant import sensor_age, values
 
 
 def together(paddle, columns, plant=None):
@@ -19,7 +20,9 @@ def device_values(paddle):
     sensor = () if paddle.velocity == "measured" else (1 / paddle.T,)
     encoder = () if paddle.counts_per_metre is None else (paddle.counts_per_metre, 1 / paddle.counts_per_metre)
     limit = () if paddle.force_max is None else (paddle.force_max,)
-    return (*values(paddle), *sensor, *encoder, *limit)
+    lag = (sensor_age(paddle), paddle.T) if paddle.plant.readings else ()
+    motor = (paddle.force_max if paddle.force_full is None else paddle.force_full, *knots(paddle)[:-1])
+    return (*values(paddle), *sensor, *encoder, *limit, *lag, *(motor if is_distorted(paddle) else ()))
 
 
 def lane_values(paddle, columns):

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .plant import values
+from .plant import NOWHERE, sensor_age, values
 
 #: periods whose noise and intent are made at once
 BLOCK = 1024
@@ -49,6 +49,8 @@ class Handle:
         self._plant = paddle.plant
         self._parameters = dict(zip((c.name for c in self._plant.channels()), values(paddle), strict=True))
         self._past = [0.0] * (self._plant.whole + self._plant.split)
+        age = sensor_age(paddle)
+        self._read = [self.x - self.v * (age + k * paddle.T) for k in range(self._plant.readings)]
         self._streams = [np.random.default_rng([paddle.seed, stream]) for stream in (0, 1)]
         self._rows, self._first_row = (), steps
 
@@ -59,8 +61,8 @@ class Handle:
 
     @property
     def seen(self):
-        """The position with the sensor's noise [m]."""
-        return self.x + (self._row()[2] if self.paddle.noise else 0.0)
+        """The position as the sensor reads it, late and with its noise [m]."""
+        return [self.x, *self._read][-1] + (self._row()[2] if self.paddle.noise else 0.0)
 
     def counts(self):
         """Return the encoder's reading, or None where the paddle has no encoder."""
@@ -74,8 +76,11 @@ class Handle:
         forces = [float(F), *self._past]
         applied, before = forces[self._plant.whole], forces[-1] if self._plant.split else None
         intent, rate, _, shake = self._row()
-        _, self.x, self.v = self._plant.step(self._parameters, self.x, self.v, before, applied, intent, rate, shake)
+        at_sample = self.x
+        x_seen, _, self.x, self.v = self._plant.step(self._parameters, self.x, self.v, before, applied, intent, rate, shake)
         self._past = forces[: len(self._past)]
+        read = at_sample if self._plant.seen == NOWHERE else x_seen
+        self._read = [read, *self._read][: len(self._read)]
         self.steps += 1
 
     def with_period(self, T):

@@ -17,6 +17,8 @@ from .transition import PHI, transition
 
 #: a remainder of delay/T this close to a whole sample is rounding
 WHOLE = 1e-9
+#: where in a period the sensor's reading lies: nowhere, before the force changes, at that instant, after it
+NOWHERE, BEFORE, AT, AFTER = range(4)
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,11 @@ class Plant:
     coulomb : bool
     pieces, terms : int
         With Coulomb friction: pieces a period part is cut into, terms of the Taylor polynomial in each.
+    lag : int
+        Whole samples by which the sensor lags.
+    seen : int
+        Where in a period the sensor's reading lies, as a fraction of a sample of lag is left: BEFORE the force changes, AT
+        that instant or AFTER it; NOWHERE without such a fraction.
     """
 
     whole: int = 0
@@ -46,11 +53,22 @@ class Plant:
     coulomb: bool = False
     pieces: int = 1
     terms: int = 0
+    lag: int = 0
+    seen: int = NOWHERE
 
     @property
     def parts(self):
-        """Name the parts of a period, before and after the force changes."""
-        return ("_before", "_after") if self.split else ("",)
+        """Name the parts of a period, before and after the force changes; "_unseen" ends with the sensor's reading."""
+        if not self.split:
+            return ("_unseen", "") if self.seen else ("",)
+        return {BEFORE: ("_unseen", "_before", "_after"), AFTER: ("_before", "_unseen", "_after")}.get(
+            self.seen, ("_before", "_after")
+        )
+
+    @property
+    def readings(self):
+        """How many readings of the sensor are under way."""
+        return self.lag + (self.seen != NOWHERE)
 
     def channels(self):
         """Return the plant's parameters, in the order of :func:`values`."""
@@ -59,7 +77,7 @@ class Plant:
             ("push", "N", self.push),
             ("k", "N/m", leans or (self.spring and self.coulomb)),
             ("b_hand", "N s/m", self.drag),
-            ("offset", "s", leans and self.split),
+            *((f"offset{part}", "s", leans) for part in self.parts[1:]),
             ("coulomb", "N", self.coulomb),
         )
         named = [(name, unit) for name, unit, there in common if there]
@@ -86,22 +104,26 @@ class Plant:
 
         Returns
         -------
-        x_switch, x, v
-            Position where the force changes, then position and velocity at the next sample.
+        x_seen, x_switch, x, v
+            Position at the sensor's reading and where the force changes, then position and velocity at the next sample.
         """
-        x_switch = x
-        for part, F in zip(self.parts, (F_before, F_after) if self.split else (F_after,), strict=True):
-            x_switch = x
+        x_seen = x_switch = x
+        newer = not self.split
+        for part in self.parts:
+            if part == "_after" or (part == "_unseen" and self.seen == AFTER and self.split):
+                x_switch, newer = (x_switch if newer else x), True
+            F = F_after if newer else F_before
             u = p["plant.push"] - F if self.push else -F
             u = u + shake if self.shake else u
             d = None
             if self.drag:
                 u = u + p["plant.b_hand"] * rate
             if self.spring and self.ramp:
-                ahead = intent + p["plant.offset"] * rate if part == "_after" else intent
+                ahead = intent if part == self.parts[0] else intent + p[f"plant.offset{part}"] * rate
                 u, d = u + p["plant.k"] * ahead, p["plant.k"] * rate
             x, v = (self._slide if self.coulomb else self._glide)(p, part, x, v, u, d)
-        return x_switch, x, v
+            x_seen = x if part == "_unseen" else x_seen
+        return (x_switch if self.seen == AT else x_seen), x_switch, x, v
 
     def _glide(self, p, part, x, v, u, d):
         phi = {e: p.get(f"plant.phi_{e}{part}") for e in PHI}
@@ -126,7 +148,7 @@ class Plant:
 def plant_of(paddle):
     """Return the Plant of a simulated paddle: only what it has."""
     hand = paddle.hand
-    whole, split, coulomb, pieces, terms = (a.item() for a in decided(paddle))
+    whole, split, coulomb, pieces, terms, lag, seen = (a.item() for a in decided(paddle))
     leaning = hand is not None and not hand.moves and hand.intent is not None and hand.k * hand.intent != 0
     return Plant(
         whole=whole,
@@ -139,20 +161,23 @@ def plant_of(paddle):
         coulomb=coulomb,
         pieces=pieces,
         terms=terms,
+        lag=lag,
+        seen=seen,
     )
 
 
 def decided(paddle):
-    """Parts of the Plant that a paddle's numbers decide: whole, split, coulomb, pieces and terms, as arrays."""
+    """Parts of the Plant that a paddle's numbers decide: whole, split, coulomb, pieces, terms, lag and seen, as arrays."""
     whole, fraction = delay_parts(paddle)
+    lag, seen = sensor_parts(paddle)
     pieces, terms, coulomb = 1, 0, np.asarray(paddle.coulomb) > 0
     if coulomb.any():
-        length = np.maximum(fraction, 1 - fraction) * paddle.T
+        length = np.max(np.broadcast_arrays(*_lengths(paddle)), axis=0)
         length, moved = np.where(coulomb, length, 0.0), dynamics(paddle)
         friction.check_pieces(length, *moved, m=paddle.m, T=paddle.T)
         pieces, terms = friction.resolution(length, *moved)
         pieces, terms = np.where(coulomb, pieces, 1), np.where(coulomb, terms, 0)
-    return tuple(np.asarray(a) for a in (whole, np.asarray(fraction) > 0, coulomb, pieces, terms))
+    return tuple(np.asarray(a) for a in (whole, np.asarray(fraction) > 0, coulomb, pieces, terms, lag, seen))
 
 
 def dynamics(paddle):
@@ -163,7 +188,25 @@ def dynamics(paddle):
 
 def delay_parts(paddle):
     """Return the whole samples of the delay and the fraction of a sample that is left; arrays where the paddle has them."""
-    samples = np.asarray(paddle.delay / paddle.T)
+    return _samples(paddle.delay, paddle.T)
+
+
+def sensor_parts(paddle):
+    """Return the whole samples of the sensor's lag, and where in a period the reading lies; see Plant."""
+    lag, late = _samples(paddle.sensor_delay, paddle.T)
+    change = delay_parts(paddle)[1] - (1 - late)  # how long after the reading the force changes, in periods
+    seen = np.where(abs(change) <= WHOLE, AT, np.where(change > 0, BEFORE, AFTER))
+    return lag, np.where(np.asarray(late) > 0, seen, NOWHERE)
+
+
+def sensor_age(paddle):
+    """How old the sensor's latest reading that is kept is at a sample [s]."""
+    lag, late = _samples(paddle.sensor_delay, paddle.T)
+    return np.where(np.asarray(late) > 0, late, 1.0) * paddle.T if np.ndim(lag) else (late or 1.0) * paddle.T
+
+
+def _samples(time, T):
+    samples = np.asarray(time / T)
     whole = np.floor(samples + WHOLE).astype(int)
     fraction = np.where(samples - whole > WHOLE, samples - whole, 0.0)
     return (whole, fraction) if samples.ndim else (whole.item(), fraction.item())
@@ -171,8 +214,17 @@ def delay_parts(paddle):
 
 def part_lengths(paddle):
     """Durations of the parts of a period [s]."""
-    fraction = delay_parts(paddle)[1]
-    return (fraction * paddle.T, (1 - fraction) * paddle.T) if paddle.plant.split else (paddle.T,)
+    return _lengths(paddle, paddle.plant.parts)
+
+
+def _lengths(paddle, parts=None):
+    """Durations of the parts of a period [s], or of parts that are as long as any of them."""
+    change, read = delay_parts(paddle)[1], 1 - _samples(paddle.sensor_delay, paddle.T)[1]
+    if parts is None:
+        return change * paddle.T, (1 - change) * paddle.T
+    ends = {"_before": change, "_unseen": read}
+    instants = [ends.get(part, 1.0) for part in parts]
+    return tuple((b - a) * paddle.T for a, b in zip((0.0, *instants), instants, strict=False))
 
 
 def values(paddle):
@@ -183,7 +235,8 @@ def values(paddle):
     if hand is not None:
         resting = 0.0 if hand.moves or hand.intent is None else hand.k * hand.intent
         found |= {"plant.push": hand.push + resting, "plant.k": hand.k, "plant.b_hand": hand.b}
-        found["plant.offset"] = part_lengths(paddle)[0]
+        begins = np.cumsum(part_lengths(paddle)[:-1], axis=0) if len(plant.parts) > 1 else ()
+        found |= {f"plant.offset{part}": begin for part, begin in zip(plant.parts[1:], begins, strict=True)}
     for part, length in zip(plant.parts, part_lengths(paddle), strict=True):
         if plant.coulomb:
             h = length / plant.pieces

@@ -20,6 +20,7 @@ from ..progress import progress_bar
 from .closed_loop import link, load_linked
 from .friction import ROUNDED_UP
 from .lanes import device_values
+from .motor import check_duties, is_distorted, knots
 from .not_finite import not_finite
 from .plant import delay_parts, dynamics, plant_of
 from .transition import smallest_mass
@@ -45,7 +46,10 @@ _NOT_NEGATIVE = {
     "delay": ("s", "A force cannot be felt before it is computed."),
     "coulomb": ("N", "Friction opposes motion."),
     "noise": ("m", "It is a standard deviation."),
+    "sensor_delay": ("s", "A sensor cannot show a position before the handle is there."),
 }
+#: of the profile -> of the paddle, where their names differ
+RENAMED = {"sensor_noise": "noise"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,6 +85,19 @@ class SimulatedPaddle(Paddle):
         Of the sensor's and the hand's noise; the same seed gives the same run.
     noise : float or text
         Standard deviation of white Gaussian noise on the sensed position [m], added before the encoder.
+    sensor_delay : float or text
+        Lag of the sensor [s], sensor_delay >= 0, whole samples or not: what the scene sees at a sample is where the handle
+        was so long before. Before the start the handle is taken to have moved evenly.
+    duty_dead : float
+        Part of full duty below which the motor gives no force, 0 ... 0.5.
+    duty_25, duty_50, duty_75 : float, optional
+        Parts of full duty, dead band included, at which the motor gives a quarter, half and three quarters of force_full,
+        with straight lines between; all three or none.
+    force_full : float or text, optional
+        Force at full duty [N]; force_max where it is not given.
+    compensated : bool
+        Whether the board knows dead band and curve, so that the motor gives the force that is computed. Otherwise the
+        board takes the force as proportional to the duty: F is what it computed, ``F_applied`` what acted.
     profile : PaddleProfile, optional
         Where the constants come from; see :meth:`from_profile`.
 
@@ -99,7 +116,7 @@ class SimulatedPaddle(Paddle):
       delay      0.0015 s = 1 whole sample + 0.5
       hand       push = 2 N
       between samples: matrix exponential; v measured
-      not modelled: encoder, noise, Coulomb friction, force limit
+      not modelled: encoder, noise, sensor lag, Coulomb friction, force limit, motor
     """
 
     m: float
@@ -114,6 +131,13 @@ class SimulatedPaddle(Paddle):
     seed: int = 0
     noise: float = 0.0
     profile: PaddleProfile | None = None
+    sensor_delay: float = 0.0
+    duty_dead: float = 0.0
+    duty_25: float | None = None
+    duty_50: float | None = None
+    duty_75: float | None = None
+    force_full: float | None = None
+    compensated: bool = True
 
     if TYPE_CHECKING:  # it takes texts and keeps floats
 
@@ -132,6 +156,13 @@ class SimulatedPaddle(Paddle):
             seed: int = 0,
             noise: Number = 0.0,
             profile: PaddleProfile | None = None,
+            sensor_delay: Number = 0.0,
+            duty_dead: float = 0.0,
+            duty_25: float | None = None,
+            duty_50: float | None = None,
+            duty_75: float | None = None,
+            force_full: Number | None = None,
+            compensated: bool = True,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -139,7 +170,7 @@ class SimulatedPaddle(Paddle):
             self._take(name, unit, above=0)
         for name, (unit, reason) in _NOT_NEGATIVE.items():
             self._take(name, unit, reason, least=0)
-        for name, unit in (("counts_per_metre", "1/m"), ("force_max", "N")):
+        for name, unit in (("counts_per_metre", "1/m"), ("force_max", "N"), ("force_full", "N")):
             if getattr(self, name) is not None:
                 self._take(name, unit, "None leaves it out.", above=0)
         if self.counts_per_metre is not None and self.counts_per_metre > FINEST_ENCODER:
@@ -147,10 +178,17 @@ class SimulatedPaddle(Paddle):
                 f"counts_per_metre = {self.counts_per_metre:g} 1/m; an encoder needs at most {FINEST_ENCODER:g}, one count "
                 "per picometre. None leaves it out."
             )
-        if self.delay > LONGEST_DELAY * self.T:
+        for name, kept in (("delay", "forces"), ("sensor_delay", "readings")):
+            late = getattr(self, name)
+            if late > LONGEST_DELAY * self.T:
+                raise PaddleError(
+                    f"{name} = {late:g} s is {late / self.T:.0f} samples; a simulated paddle stores at most "
+                    f"{LONGEST_DELAY} delayed {kept}: {name} <= {LONGEST_DELAY * self.T:g} s at T = {self.T:g} s."
+                )
+        check_duties(self, PaddleError)
+        if is_distorted(self) and self.force_full is None and self.force_max is None:
             raise PaddleError(
-                f"delay = {self.delay:g} s is {self.delay / self.T:.0f} samples; a simulated paddle stores at most "
-                f"{LONGEST_DELAY} delayed forces: delay <= {LONGEST_DELAY * self.T:g} s at T = {self.T:g} s."
+                "compensated = False, and the force at full duty is not known. Give force_full, as force_full=8.0 [N]."
             )
         if self.rounding not in ("floor", "nearest"):
             raise PaddleError(f"rounding = {self.rounding!r}; an encoder needs 'floor' or 'nearest'.")
@@ -180,16 +218,18 @@ class SimulatedPaddle(Paddle):
     def from_profile(cls, profile: PaddleProfile | str, **changes: Any) -> SimulatedPaddle:
         """Return a paddle with the constants of a profile, given itself or by name: ``from_profile("eth", T=5e-4)``."""
         profile = named_profile(profile) if isinstance(profile, str) else profile
-        names = {f.name for f in fields(cls)} & {f.name for f in fields(PaddleProfile)}
-        unknown = sorted(set(changes) - {f.name for f in fields(cls)})
+        own = {f.name for f in fields(cls)}
+        known = {RENAMED.get(f.name, f.name): getattr(profile, f.name) for f in fields(PaddleProfile)}
+        unknown = sorted(set(changes) - own)
         if unknown:
-            known = ", ".join(f.name for f in fields(cls))
-            raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle. The arguments are {known}.")
-        return cls(**{**{name: getattr(profile, name) for name in names}, "profile": profile, **changes})
+            arguments = ", ".join(f.name for f in fields(cls))
+            raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle. The arguments are {arguments}.")
+        return cls(**{**{name: a for name, a in known.items() if name in own}, "profile": profile, **changes})
 
     @property
     def velocity(self) -> str:
-        return "measured" if self.counts_per_metre is None and self.noise == 0 else "backward_difference"
+        exact = self.counts_per_metre is None and self.noise == 0 and self.sensor_delay == 0
+        return "measured" if exact else "backward_difference"
 
     @property
     def plant(self) -> Any:
@@ -200,7 +240,7 @@ class SimulatedPaddle(Paddle):
     def structure(self) -> tuple[Any, ...]:
         """What decides the linked program, as against its parameter values; compare with ==."""
         encoder = self.rounding if self.counts_per_metre is not None else None
-        return self.plant, encoder, self.noise > 0, self.force_max is not None
+        return self.plant, encoder, self.noise > 0, self.force_max is not None, is_distorted(self)
 
     def plant_values(self, x: Number = 0.0, v: Number = 0.0) -> tuple[float, ...]:
         """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""
@@ -286,7 +326,7 @@ class SimulatedPaddle(Paddle):
         return Telemetry(
             t=np.arange(len(x)) * self.T, x=x, v=v, F=F, T=self.T, delay=self.delay, channels=columns,
             units={name: units[name] for name in (*columns, *parameters) if name in units}, paddle=str(self),
-            scene=program.name, parameters=parameters, fault=fault, saturated=limited,
+            scene=program.name, parameters=parameters, fault=fault, saturated=limited, sensor_delay=self.sensor_delay,
         )  # fmt: skip
 
     def _line(self):
@@ -296,14 +336,16 @@ class SimulatedPaddle(Paddle):
         whole, fraction = delay_parts(self)
         samples = f"{whole} whole sample{'s' * (whole != 1)}" + (f" + {fraction:g}" if fraction else "")
         counts = self.counts_per_metre
-        plant = self.plant
+        plant, duties = self.plant, ", ".join(f"{duty:g}" for duty in knots(self)[:-1])
         between = f"friction located, {plant.pieces} piece(s), {plant.terms} Taylor terms"
         rows = {
             "delay": self.delay and f"{self.delay:g} s = {samples}",
             "encoder": counts and f"{1e6 / counts:g} um per count, {self.rounding}",
             "noise": self.noise and f"{self.noise:g} m standard deviation, seed {self.seed}",
+            "sensor lag": self.sensor_delay and f"{self.sensor_delay:g} s",
             "Coulomb friction": self.coulomb and f"{self.coulomb:g} N",
             "force limit": self.force_max and f"{self.force_max:g} N",
+            "motor": is_distorted(self) and f"0, 25, 50, 75 % of its force at duties {duties}",
             "hand": self.hand,
         }
         lines = [f"simulated paddle: m = {self.m:g} kg, b = {self.b:g} N s/m, T = {self.T:g} s"]

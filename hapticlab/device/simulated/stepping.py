@@ -162,6 +162,7 @@ class Stepping:
         limited = np.abs(rows["F"]) >= paddle.force_max if paddle.force_max is not None else None
         return Telemetry(
             t=rows["t"] - begin, x=rows["x"], v=rows["v"], F=rows["F"], T=paddle.T, delay=paddle.delay, channels=channels,
+            sensor_delay=paddle.sensor_delay,
             units={**self.program.units, "intent": "m"}, paddle=str(paddle), scene=self.program.name, parameters=dict(values),
             fault=self.fault, saturated=limited, changes=tuple((t - begin, numbers) for t, numbers in changes),
         )  # fmt: skip

@@ -19,7 +19,7 @@ def step(paddle, x, v, F=0.0, intent=0.0, rate=0.0):
     """Advance one period in plain floats."""
     plant = plant_of(paddle)
     p = dict(zip((c.name for c in plant.channels()), values(paddle), strict=True))
-    return plant.step(p, x, v, F, F, intent, rate)[1:]
+    return plant.step(p, x, v, F, F, intent, rate)[2:]
 
 
 def test_spin_down_stops_at_the_closed_form():

@@ -20,6 +20,8 @@ PADDLES = {
     "moving": dict(hand=SWAY),
     "noisy": dict(noise=1e-5, hand=Hand(k=100.0, b=1.0, intent=0.002, push_noise=0.05), seed=4),
     "encoder": dict(counts_per_metre=2e4, rounding="nearest", hand=SWAY, noise=2e-5, seed=7),
+    "sensor late by a fraction": dict(sensor_delay=3e-4, delay=4e-4, hand=SWAY),
+    "sensor late by 1.8 samples, friction": dict(sensor_delay=1.8e-3, delay=3e-4, coulomb=0.05, counts_per_metre=2e4, hand=SWAY),
     "limited": dict(force_max=0.3, hand=SWAY, counts_per_metre=5e4),
 }
 

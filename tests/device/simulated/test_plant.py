@@ -50,7 +50,7 @@ def test_step_is_the_differential_equation(hand, delay):
     at_switch = y[0]
     y = solve_ivp(field(F_after), (part, 1e-3), y, **options).y[:, -1]
     got = plant_of(paddle).step(parameters_of(paddle), x, v, F_before, F_after, intent, rate)
-    assert got == pytest.approx([at_switch, *y], rel=1e-12)
+    assert got[1:] == pytest.approx([at_switch, *y], rel=1e-12)
 
 
 @pytest.mark.parametrize(
