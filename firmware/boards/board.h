@@ -14,15 +14,19 @@
  *   HL_CLOCK_HZ          of board_clock
  *   HL_DUTY_FULL         the largest duty
  *   HL_PERIOD_MIN_US, HL_PERIOD_MAX_US
- *   HL_STORE_BYTES       of the memory that survives power-off: settings first, the standalone program behind them */
+ *   HL_STORE_BYTES       of the memory that survives power-off: two copies of the settings, the standalone program behind them */
 #ifndef HL_BOARD_H
 #define HL_BOARD_H
 
 #include "core.h"
 
-/* The handle's sensor, unwrapped: counts grow and shrink with the position without bound. Called once a tick.
- * A sensor that cannot be right calls hl_core_fault(core, HL_FAULT_SENSOR, reading). */
-int32_t board_counts(hl_core *core);
+/* The handle's sensor, raw: an angle sensor's reading, which repeats after settings.wrap counts, or the low 16 bits of an
+ * encoder's running count. Called once a tick; the core unwraps it, and judges what cannot be a motion. A sensor that
+ * cannot be right calls hl_core_fault(core, HL_FAULT_SENSOR, reading) and returns what it returned before. */
+uint16_t board_reading(hl_core *core);
+
+/* Whether this board can do that wiring: sensor, drive, pins and carrier; every number is within its range. */
+uint8_t board_accepts(const hl_settings *settings);
 
 /* Drive the motor: duty from -HL_DUTY_FULL to HL_DUTY_FULL, positive pushes the handle to larger counts' positions as
  * the core sees them. 0 switches the driver off at once. Callable from anywhere. */
@@ -48,7 +52,8 @@ void board_unlock(hl_core *core);
 /* HL_RESET_..., as far as the bootloader leaves it. */
 uint8_t board_reset_cause(hl_core *core);
 
-/* Take the sensor named in core->settings into use. */
+/* Take the wiring in core->settings into use: the sensor always, the motor's pins only where `wired` says that a person
+ * has confirmed them; else they stay low, or inputs. Called with the motor off; the sensor may begin anywhere. */
 void board_configure(hl_core *core);
 
 /* Called from hl_core_poll: feed the hardware watchdog if the tick ran since, look at the stack's guard. */

@@ -27,7 +27,7 @@ typedef struct {
     union {
         uint8_t bytes[HL_ARENA_BYTES];
         hl_slot slots[HL_ARENA_BYTES / 4];
-        hl_settings settings; /* an upload of them passes through here too */
+        hl_record record; /* settings pass through here too */
     } arena;
     hl_program program;
     hl_slot *registers;
@@ -74,7 +74,9 @@ typedef struct hl_core {
     uint8_t calibrated, homed, mismatch, armed, standalone;
 
     /* the handle */
-    int32_t counts, before;    /* at this tick, at the one before */
+    uint16_t reading;          /* of the sensor, as it was taken last */
+    uint8_t unread;            /* there is no reading yet to compare with */
+    int32_t counts, before;    /* at this tick, at the one before: readings, unwrapped, without bound */
     int32_t origin;            /* position = (counts - origin) * settings.metres_per_count */
     int32_t seen_min, seen_max; /* since the position became unknown */
     hl_limits limits;

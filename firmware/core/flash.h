@@ -30,4 +30,11 @@ static inline const void *hl_flash_pointer(const void *const *p)
 #define HL_FLASH_POINTER(p) (*(p))
 #endif
 
+static inline void hl_flash_copy(uint8_t *to, const uint8_t *from, uint8_t count)
+{
+    while (count--) {
+        *to++ = HL_FLASH_BYTE(from++);
+    }
+}
+
 #endif

@@ -12,6 +12,29 @@ static int32_t counts_of(const hl_core *core, float metres)
     return whole(metres / core->settings.metres_per_count);
 }
 
+/* The way from one reading to the next: the nearest, as a sensor may have gone from its last count to its first. */
+static int16_t step_of(const hl_core *core, uint16_t from, uint16_t to)
+{
+    const int16_t step = (int16_t)(to - from); /* a running count turns over by itself */
+    const int16_t wrap = (int16_t)core->settings.wrap;
+    if (core->settings.sensor == HL_SENSOR_QUADRATURE) {
+        return step;
+    }
+    return (int16_t)(2 * step > wrap ? step - wrap : 2 * step < -wrap ? step + wrap : step);
+}
+
+/* Take the sensor's reading into counts, which grow and shrink with the position without bound. */
+void hl_handle_read(hl_core *core)
+{
+    const uint16_t reading = board_reading(core);
+    core->before = core->counts;
+    if (!core->unread) {
+        core->counts = hl_moved(-step_of(core, core->reading, reading), core->counts);
+    }
+    core->reading = reading;
+    core->unread = 0;
+}
+
 /* The speed limit in counts a period; one count of noise either way is no motion. */
 int32_t hl_handle_speed(const hl_core *core, uint16_t period_us)
 {
@@ -31,7 +54,7 @@ void hl_handle_limits(hl_core *core)
     core->limits.lowest = low - margin;
     core->limits.highest = high + margin;
     core->limits.speed = hl_handle_speed(core, core->period_us);
-    /* half a turn of the magnet is `wrap` counts, and half of that either way looks alike: an eighth is kept as margin */
+    /* of `wrap` counts half either way looks alike: an eighth is kept as margin */
     core->limits.alias = s->sensor == HL_SENSOR_QUADRATURE ? INT32_MAX : (int32_t)s->wrap * 3 / 8;
 }
 

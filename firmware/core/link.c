@@ -130,6 +130,6 @@ void hl_core_start(hl_core *core)
 {
     memset(core, 0, sizeof *core);
     board_motor(core, 0);
-    hl_settings_load(core);
+    hl_settings_load(core, &core->places[0]);
     core->standalone = hl_load_standalone(core) == HL_OK && core->calibrated && core->settings.checked;
 }

@@ -221,8 +221,7 @@ static void idle(hl_core *core)
 void hl_core_tick(hl_core *core)
 {
     const uint16_t begin = board_clock(core);
-    core->before = core->counts;
-    core->counts = board_counts(core);
+    hl_handle_read(core);
     core->ran = 1;
     if (core->state == HL_STATE_RUN) {
         run(core, begin);

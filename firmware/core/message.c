@@ -3,6 +3,7 @@
 #include "parts.h"
 #include "wire.h"
 
+#include <stddef.h>
 #include <string.h>
 
 enum { CRC_BYTES = 4 }; /* at the end of programs and settings */
@@ -31,7 +32,9 @@ static uint8_t welcome(hl_core *core, const uint8_t *payload, uint8_t *to)
     memset(to, 0, HL_AT_WELCOME_RESET_CAUSE + 1);
     memcpy(to + HL_AT_WELCOME_BOARD, HL_BOARD_NAME, sizeof HL_BOARD_NAME - 1);
     hl_put32(to + HL_AT_WELCOME_TABLE, HL_PROTOCOL_HASH);
-    hl_put16(to + HL_AT_WELCOME_IDENT, (uint16_t)core->settings.ident);
+    if (core->calibrated) {
+        board_store_read(core, (uint16_t)offsetof(hl_record, ident), to + HL_AT_WELCOME_IDENT, 2);
+    }
     to[HL_AT_WELCOME_MAJOR] = FIRMWARE_MAJOR;
     to[HL_AT_WELCOME_MINOR] = FIRMWARE_MINOR;
     to[HL_AT_WELCOME_WORD_BYTES] = HL_WORD_BYTES;
@@ -87,15 +90,16 @@ static uint8_t state_of(hl_core *core, uint8_t *to)
     return HL_AT_STATE_DAMAGED + 2;
 }
 
-static uint8_t read_settings(const hl_core *core, const uint8_t *payload, uint8_t *to)
+/* Bytes of the settings in use, from the store; none where there are no settings. */
+static uint8_t read_settings(hl_core *core, const uint8_t *payload, uint8_t *to)
 {
     const uint16_t offset = hl_get16(payload + HL_AT_READ_OFFSET);
-    const uint16_t left = offset < sizeof core->settings ? (uint16_t)(sizeof core->settings - offset) : 0;
+    const uint16_t left = core->calibrated && offset < HL_RECORD_BYTES ? (uint16_t)(HL_RECORD_BYTES - offset) : 0;
     uint8_t count = payload[HL_AT_READ_COUNT];
     count = count < HL_LARGEST_PAYLOAD - 2 ? count : HL_LARGEST_PAYLOAD - 2;
     count = count < left ? count : (uint8_t)left;
     hl_put16(to, offset);
-    memcpy(to + 2, (const uint8_t *)&core->settings + (left ? offset : 0), count);
+    board_store_read(core, left ? offset : 0, to + 2, count);
     return (uint8_t)(2 + count);
 }
 
@@ -135,13 +139,25 @@ static uint8_t data(hl_core *core, const uint8_t *payload, uint8_t count)
     return HL_OK;
 }
 
-static uint8_t commit_settings(hl_core *core, const hl_place *place, uint16_t size)
+/* Another wiring than the one in use is a new paddle: nobody has confirmed it, nor seen its motor push. */
+static uint8_t commit_settings(hl_core *core, hl_place *place, uint16_t size)
 {
-    const hl_settings *settings = &place->arena.settings;
-    if (size != sizeof *settings) {
+    const hl_record *record = &place->arena.record;
+    if (size != sizeof *record) {
         return HL_RESULT_LENGTH;
     }
-    return hl_settings_valid(settings) ? hl_settings_save(core, settings) : (uint8_t)HL_RESULT_RANGE;
+    if (!hl_settings_valid(record)) {
+        return HL_RESULT_RANGE;
+    }
+    if (!core->calibrated || memcmp(&record->loop.motor_pins, &core->settings.motor_pins, HL_WIRING_BYTES) != 0) {
+        if (core->state != HL_STATE_IDLE) {
+            return HL_RESULT_FAULT;
+        }
+        if (record->loop.wired || record->loop.checked) {
+            return HL_RESULT_NOT_WIRED;
+        }
+    }
+    return hl_settings_save(core, place);
 }
 
 /* Take an upload into use: whole, undamaged and verified, or not at all. */

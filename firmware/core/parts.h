@@ -11,15 +11,20 @@ static inline int32_t hl_moved(int32_t from, int32_t to)
 }
 
 /* store.c: what survives power-off */
-enum { HL_STORE_ARMED = 96, HL_STORE_SIZE = 97, HL_STORE_PROGRAM = 100 }; /* addresses; the settings are at 0 */
-int hl_settings_valid(const hl_settings *settings);
-void hl_settings_load(hl_core *core);
-uint8_t hl_settings_save(hl_core *core, const hl_settings *settings);
+enum { /* addresses; the settings are at 0 */
+    HL_STORE_ARMED = 2 * HL_RECORD_BYTES,
+    HL_STORE_SIZE = HL_STORE_ARMED + 1,
+    HL_STORE_PROGRAM = HL_STORE_ARMED + 4
+};
+int hl_settings_valid(const hl_record *record);
+void hl_settings_load(hl_core *core, hl_place *place);
+uint8_t hl_settings_save(hl_core *core, hl_place *place);
 uint8_t hl_store_program(hl_core *core, const hl_place *place, uint16_t size);
 uint8_t hl_store_arm(hl_core *core, uint8_t armed);
 uint8_t hl_load_standalone(hl_core *core);
 
 /* handle.c: where the handle is */
+void hl_handle_read(hl_core *core);
 void hl_handle_limits(hl_core *core);
 void hl_handle_place(hl_core *core, float position);
 void hl_handle_lose(hl_core *core);

@@ -81,7 +81,10 @@ static uint8_t why_not(const hl_core *core, const hl_place *place, uint16_t ever
     if (core->heat > core->settings.force_continuous * core->settings.force_continuous) {
         return HL_RESULT_HOT;
     }
-    return !core->calibrated ? HL_RESULT_NOT_CALIBRATED : !core->homed ? HL_RESULT_NOT_HOMED : HL_OK;
+    if (!core->calibrated) {
+        return HL_RESULT_NOT_CALIBRATED;
+    }
+    return !core->settings.wired ? HL_RESULT_NOT_WIRED : !core->homed ? HL_RESULT_NOT_HOMED : HL_OK;
 }
 
 /* Take a period into use: everything that is counted in ticks. */

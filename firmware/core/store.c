@@ -1,25 +1,30 @@
 /* What survives power-off: settings, a program, and whether it may start without a host. */
 #include "crc.h"
+#include "flash.h"
 #include "parts.h"
 #include "wire.h"
 
+#include <stddef.h>
 #include <string.h>
 
 enum { ARMED = 0xa5 };
 
-/* Whether every number is one that the loop can work with. */
-int hl_settings_valid(const hl_settings *s)
+typedef char record_is_not_padded[sizeof(hl_record) == HL_RECORD_BYTES ? 1 : -1];
+
+typedef struct {
+    float lowest, highest;
+    uint8_t at;
+} range;
+
+static const range ranges[] HL_FLASH = {
+#define RANGE(name, lowest, highest) {lowest, highest, offsetof(hl_record, name)},
+    HL_SETTING_RANGES(RANGE)
+#undef RANGE
+};
+
+/* What relates numbers that are each within their range. */
+static int fit_together(const hl_settings *s)
 {
-    const uint16_t before_crc = (uint16_t)(sizeof *s - sizeof s->crc);
-    if (s->layout != HL_SETTINGS_HASH || s->crc != hl_crc32(0, (const uint8_t *)s, before_crc)) {
-        return 0;
-    }
-#define REFUSE(name, low, high) \
-    if (!(s->name >= low && s->name <= high)) { \
-        return 0; \
-    }
-    HL_SETTING_RANGES(REFUSE)
-#undef REFUSE
     const float step = hl_absf(s->metres_per_count);
     if (!(step >= HL_METRES_PER_COUNT_MIN) || !(s->travel_min < s->travel_max)) {
         return 0;
@@ -27,18 +32,48 @@ int hl_settings_valid(const hl_settings *s)
     if (!(hl_absf(s->travel_min / step) < HL_COUNTS_MAX) || !(hl_absf(s->travel_max / step) < HL_COUNTS_MAX)) {
         return 0; /* sums of counts must fit 32 bits */
     }
-    if ((s->motor_sign != 1 && s->motor_sign != -1) || s->motor_law > HL_MOTOR_SQRT) {
+    if (s->motor_law == HL_MOTOR_MEASURED
+        && !(s->duty_dead < s->duty_25 && s->duty_25 < s->duty_50 && s->duty_50 < s->duty_75 && s->duty_75 < 1.0f)) {
+        return 0; /* the force grows with the duty */
+    }
+    if ((s->motor_sign != 1 && s->motor_sign != -1) || s->motor_law > HL_MOTOR_MEASURED || s->wired > 1) {
         return 0;
     }
-    return s->sensor == HL_SENSOR_QUADRATURE || (s->sensor == HL_SENSOR_MAGNETORESISTIVE && s->wrap >= HL_WRAP_MIN && s->wrap <= HL_WRAP_MAX);
+    if (s->checked > s->wired || s->sensor > HL_SENSOR_AS5048A || s->drive > HL_DRIVE_SHIFT_REGISTER) {
+        return 0; /* a motor's sign is checked on a confirmed wiring */
+    }
+    return s->sensor == HL_SENSOR_QUADRATURE || (s->wrap >= HL_WRAP_MIN && s->wrap <= HL_WRAP_MAX);
 }
 
-void hl_settings_load(hl_core *core)
+/* Whether every number is one that the loop can work with, and the board can do the wiring. */
+int hl_settings_valid(const hl_record *record)
 {
+    const uint16_t before_crc = (uint16_t)(sizeof *record - sizeof record->crc);
+    if (record->layout != HL_SETTINGS_HASH || record->crc != hl_crc32(0, (const uint8_t *)record, before_crc)) {
+        return 0;
+    }
+    for (uint8_t k = 0; k < sizeof ranges / sizeof ranges[0]; k++) {
+        range r;
+        float value;
+        hl_flash_copy((uint8_t *)&r, (const uint8_t *)&ranges[k], sizeof r);
+        memcpy(&value, (const uint8_t *)record + r.at, sizeof value);
+        if (!(value >= r.lowest && value <= r.highest)) {
+            return 0;
+        }
+    }
+    return fit_together(&record->loop) && board_accepts(&record->loop);
+}
+
+/* Read the settings through a place whose program is not needed any more. */
+void hl_settings_load(hl_core *core, hl_place *place)
+{
+    hl_record *record = &place->arena.record;
     hl_settings *s = &core->settings;
-    board_store_read(core, 0, (uint8_t *)s, (uint16_t)sizeof *s);
-    core->calibrated = (uint8_t)hl_settings_valid(s);
-    if (!core->calibrated) {
+    board_store_read(core, 0, (uint8_t *)record, (uint16_t)sizeof *record);
+    core->calibrated = (uint8_t)hl_settings_valid(record);
+    if (core->calibrated) {
+        *s = record->loop;
+    } else {
         memset(s, 0, sizeof *s);
         s->metres_per_count = 1.0f; /* counts for metres: nothing can be commanded without settings */
         s->force_full = s->force_continuous = s->heating_time = 1.0f;
@@ -49,17 +84,18 @@ void hl_settings_load(hl_core *core)
     /* opening the port resets many boards, which then do not know how hot the motor is: take half of what it stands */
     const float half = 0.5f * s->force_continuous * s->force_continuous;
     core->heat = core->heat > half ? core->heat : half;
+    core->unread = 1;
     hl_place_idle(core);
     hl_handle_lose(core);
     board_configure(core);
 }
 
-/* Write settings and take them into use; what was written is read back. */
-uint8_t hl_settings_save(hl_core *core, const hl_settings *settings)
+/* Write the settings that a place holds and take them into use; what was written is read back. */
+uint8_t hl_settings_save(hl_core *core, hl_place *place)
 {
-    const uint8_t kept = board_store_write(core, 0, (const uint8_t *)settings, (uint16_t)sizeof *settings);
+    const uint8_t kept = board_store_write(core, 0, place->arena.bytes, (uint16_t)sizeof(hl_record));
     board_lock(core);
-    hl_settings_load(core);
+    hl_settings_load(core, place);
     board_unlock(core);
     return kept && core->calibrated ? (uint8_t)HL_OK : (uint8_t)HL_RESULT_STORE;
 }

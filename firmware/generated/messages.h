@@ -6,8 +6,8 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0x78269460UL
-#define HL_SETTINGS_HASH 0xe1d4ada6UL
+#define HL_PROTOCOL_HASH 0xc568c943UL
+#define HL_SETTINGS_HASH 0x86802d1aUL
 #define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
 #define HL_UNCHECKED_FORCE_N 0.5f
@@ -139,6 +139,7 @@ enum {
     HL_RESULT_CHANNELS = 45,
     HL_RESULT_ALIAS = 47,
     HL_RESULT_HOT = 46,
+    HL_RESULT_NOT_WIRED = 48,
 };
 
 enum {
@@ -189,11 +190,20 @@ enum {
 enum {
     HL_SENSOR_MAGNETORESISTIVE = 0,
     HL_SENSOR_QUADRATURE = 1,
+    HL_SENSOR_AS5048A = 2,
+};
+
+enum {
+    HL_DRIVE_PWM_DIRECTION = 0,
+    HL_DRIVE_TWO_INPUTS = 1,
+    HL_DRIVE_TWO_INPUTS_ENABLE = 2,
+    HL_DRIVE_SHIFT_REGISTER = 3,
 };
 
 enum {
     HL_MOTOR_LINEAR = 0,
     HL_MOTOR_SQRT = 1,
+    HL_MOTOR_MEASURED = 2,
 };
 
 enum {
@@ -204,12 +214,8 @@ enum {
     HL_RESET_WATCHDOG = 4,
 };
 
-/* what survives power-off */
+/* what the loop works with */
 typedef struct {
-    uint32_t layout; /* [1] CRC-32 of this table, so that settings of another firmware are not taken for these */
-    uint32_t ident; /* [1] 16 bits that name this very paddle */
-    uint32_t date; /* [1] of calibration, as 20261120; 0: never calibrated */
-    uint32_t checked; /* [1] 1 once the motor's sign was seen to be right */
     float metres_per_count; /* [m] handle travel of one count; its sign makes x grow into the wall */
     float travel_min; /* [m] position of the lower stop */
     float travel_max; /* [m] position of the upper stop */
@@ -218,33 +224,65 @@ typedef struct {
     float force_continuous; /* [N] the largest force the motor stands for ever */
     float heating_time; /* [s] time constant of the motor's heating */
     float speed_max; /* [m/s] faster than this is a fault */
-    uint32_t motor_law; /* [1] duty from force: MOTOR_LAWS */
-    int32_t motor_sign; /* [1] 1, or -1 where the motor's wires are swapped */
-    uint32_t sensor; /* [1] SENSORS */
-    uint32_t wrap; /* [1] counts of a magnetoresistive sensor over half a turn */
+    float duty_dead; /* [1] part of full duty below which the motor gives no force */
+    float duty_25; /* [1] part of full duty for a quarter of force_full, where the law is MEASURED */
+    float duty_50; /* [1] part of full duty for half of force_full, where the law is MEASURED */
+    float duty_75; /* [1] part of full duty for three quarters of force_full, where the law is MEASURED */
+    uint32_t motor_pins; /* [1] pins of the motor's driver, one a byte */
+    uint32_t sensor_pins; /* [1] pins of the sensor, one a byte */
+    uint32_t carrier; /* [Hz] frequency of the PWM, rounded to what the board's timer can do */
+    uint8_t sensor; /* [1] SENSORS */
+    uint8_t drive; /* [1] how the motor's driver is told: DRIVES */
+    uint16_t wrap; /* [1] counts after which the reading of an angle sensor repeats */
+    uint8_t wired; /* [1] 1 once a person has confirmed the wiring */
+    uint8_t checked; /* [1] 1 once the motor's sign was seen to be right */
+    uint8_t motor_law; /* [1] duty from force: MOTOR_LAWS */
+    int8_t motor_sign; /* [1] 1, or -1 where the motor's wires are swapped */
+} hl_settings;
+
+/* what survives power-off */
+typedef struct {
+    uint32_t layout; /* [1] CRC-32 of this table, so that settings of another firmware are not taken for these */
+    hl_settings loop;
+    uint32_t ident; /* [1] 16 bits that name this very paddle */
+    uint32_t date; /* [1] of calibration, as 20261120; 0: never calibrated */
     float m; /* [kg] effective mass, for the computer's models */
     float b; /* [N s/m] viscous damping, for the computer's models */
     float coulomb; /* [N] Coulomb friction, for the computer's models */
+    float sensor_delay; /* [s] age of the sensor's reading, for the computer's models */
+    float sensor_noise; /* [m] standard deviation of the sensor's noise, for the computer's models */
+    float sensor_flight; /* [s] time in which an angle sensor goes from its last count back to its first */
     uint32_t crc; /* [1] CRC-32 of all before it */
-} hl_settings;
+} hl_record;
 
+#define HL_RECORD_BYTES 108 /* on the wire and in the store: no compiler may pad it */
+#define HL_NO_PIN 255
 #define HL_METRES_PER_COUNT_MIN 1e-12f
 #define HL_COUNTS_MAX 100000000.0f
 #define HL_WRAP_MIN 16
-#define HL_WRAP_MAX 4096
+#define HL_WRAP_MAX 16384
 
-/* X(name, lowest, highest) */
+#define HL_WIRING_BYTES 14 /* what a person confirms, from motor_pins on */
+
+/* X(member of the record, lowest, highest) */
 #define HL_SETTING_RANGES(X) \
-    X(metres_per_count, -0.1f, 0.1f) \
-    X(travel_min, -1000.0f, 1000.0f) \
-    X(travel_max, -1000.0f, 1000.0f) \
-    X(force_full, 1e-06f, 1000000.0f) \
-    X(force_max, 1e-06f, 1000000.0f) \
-    X(force_continuous, 1e-06f, 1000000.0f) \
-    X(heating_time, 1.0f, 1000000.0f) \
-    X(speed_max, 1e-06f, 1000000.0f) \
+    X(loop.metres_per_count, -0.1f, 0.1f) \
+    X(loop.travel_min, -1000.0f, 1000.0f) \
+    X(loop.travel_max, -1000.0f, 1000.0f) \
+    X(loop.force_full, 1e-06f, 1000000.0f) \
+    X(loop.force_max, 1e-06f, 1000000.0f) \
+    X(loop.force_continuous, 1e-06f, 1000000.0f) \
+    X(loop.heating_time, 1.0f, 1000000.0f) \
+    X(loop.speed_max, 1e-06f, 1000000.0f) \
+    X(loop.duty_dead, 0.0f, 0.5f) \
+    X(loop.duty_25, 0.0f, 1.0f) \
+    X(loop.duty_50, 0.0f, 1.0f) \
+    X(loop.duty_75, 0.0f, 1.0f) \
     X(m, 0.0f, 1000000.0f) \
     X(b, 0.0f, 1000000.0f) \
-    X(coulomb, 0.0f, 1000000.0f)
+    X(coulomb, 0.0f, 1000000.0f) \
+    X(sensor_delay, 0.0f, 1.0f) \
+    X(sensor_noise, 0.0f, 1.0f) \
+    X(sensor_flight, 0.0f, 0.01f)
 
 #endif

@@ -9,8 +9,6 @@ import numpy as np
 
 from ..base.arguments import number
 from ..device.board.serial_paddle import SerialPaddle
-from ..device.link.messages import MOTOR_LAWS
-from ..device.setup.force_fit import duty_of
 from ..errors import AnalysisError, PaddleError
 from .handle_records import HandleRecord, identify
 from .identifying_forces import LEAD, Excitation, centring, designed
@@ -177,6 +175,5 @@ def after(log, asked):
 
 def given(paddle, F):
     """The forces [N] that a board's motor gave for those it was asked for: its duty has steps."""
-    law = next(name for name, k in MOTOR_LAWS.items() if k == paddle.settings.motor_law)
-    duties = np.array([duty_of(force, paddle.settings, paddle.board["duty_full"]) for force in F])
-    return np.sign(F) * paddle.settings.force_full * (duties if law == "LINEAR" else duties**2)
+    settings, steps = paddle.settings, paddle.board["duty_full"]
+    return np.array([settings.force_of_duty(settings.duty(force, steps)) for force in F])

@@ -22,7 +22,7 @@ K, X_WALL, METRES = 150.0, 0.002, 12.8e-6  # N/m, m, m of a count: as in hapkit.
 FULL = 0.03 / (0.004191 * 0.065659 / 0.073152)  # N at full duty: 0.03 N m of torque at the motor
 HOLD = 0.005  # s, on every step of the staircase
 LEVELS = METRES * (np.floor(np.arange(0, 0.0121, 0.00025) / METRES) + 0.5)  # m, in the middle of a count
-SETTINGS = nominal("hapkit", checked=1, ident=1, date=20261120, force_full=FULL)
+SETTINGS = nominal("hapkit", wired=1, checked=1, ident=1, date=20261120, force_full=FULL)
 k, x_o = hl.parameters("k x_o", units="N/m m")
 SPRING_WALL = hl.Scene(force=hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o)), name="wall")(k=K, x_o=X_WALL)
 

@@ -25,7 +25,7 @@ def image():
 @contextmanager
 def emulated_uno(hand=None, *, T=1e-3, home=True, settings=None, **changes):
     """A SerialPaddle on an emulated Uno whose handle is a simulated hapkit's; it is told where that is, unless not ``home``."""
-    settings = settings or nominal("hapkit", checked=1, ident=0x3F2A, date=20261120)
+    settings = settings or nominal("hapkit", wired=1, checked=1, ident=0x3F2A, date=20261120)
     mechanics = SimulatedPaddle.from_profile("hapkit", hand=hand, **changes)
     with Uno(image(), eeprom=settings.to_bytes()) as board:
         loop = ClosedLoop.of(settings.to_float32(), board, PaddleHandle(mechanics))

@@ -111,7 +111,7 @@ def measure(fault):
 
     From the first duty of zero on the duty stays zero for 0.2 s, or the time is infinite.
     """
-    settings = nominal("hapkit", **{"checked": 1, "ident": 1, "date": 20261120, **fault.settings})
+    settings = nominal("hapkit", **{"wired": 1, "checked": 1, "ident": 1, "date": 20261120, **fault.settings})
     with emulated_uno(HAND, T=fault.period, settings=settings) as paddle:
         paddle.start(fault.scene, check_fit=False)
         if fault.inject is not nothing:

@@ -17,7 +17,7 @@ from hapticlab.scene.scene import Scene
 PIECE = 40
 #: 10 um per count, +-50 mm, linear motor of 8 N, limited to 4 N
 SETTINGS = dict(
-    checked=1, metres_per_count=1e-5, travel_min=-0.05, travel_max=0.05, force_full=8.0, force_max=4.0,
+    wired=1, checked=1, metres_per_count=1e-5, travel_min=-0.05, travel_max=0.05, force_full=8.0, force_max=4.0,
     force_continuous=4.0, heating_time=60.0, speed_max=2.0,
 )  # fmt: skip
 

@@ -1,6 +1,9 @@
 /* A core that lets the tests see and drive the board underneath: in place of firmware/core. */
 #include "uno.h"
 
+#include "../../firmware/core/handle.c" /* unwraps the sensor's readings */
+
+#include <stddef.h>
 #include <string.h>
 
 struct {
@@ -21,13 +24,15 @@ struct {
     uint16_t refused;
 } volatile probe;
 
+volatile int32_t counts;
 static volatile uint8_t head, tail;
 #define QUEUED(k) uno_core.places[0].arena.bytes[k] /* memory nobody else needs here */
 
 void hl_core_start(hl_core *core)
 {
     memset(core, 0, sizeof *core);
-    board_store_read(core, 0, (uint8_t *)&core->settings, sizeof core->settings);
+    board_store_read(core, offsetof(hl_record, loop), (uint8_t *)&core->settings, sizeof core->settings);
+    core->unread = 1;
     probe.cause = board_reset_cause(core);
     probe.at = 0xFFFF;
     board_configure(core);
@@ -37,7 +42,8 @@ void hl_core_start(hl_core *core)
 void hl_core_tick(hl_core *core)
 {
     const uint16_t begin = board_clock(core), gap = (uint16_t)(begin - probe.begin);
-    core->counts = board_counts(core);
+    hl_handle_read(core);
+    counts = core->counts;
     core->ran = 1;
     probe.begin = begin;
     if (probe.ticks++) {

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 QUICKEST = 0.06  # of the motion [m/s]
 #: a sensor as fine as the board follows at that speed, so that what is left is the error of the program; 0.2 mm a turn
 COUNT = 2.2e-7  # [m]
-SENSOR = nominal("hapkit", checked=1, ident=0x3F2A, date=20261120, metres_per_count=COUNT, speed_max=QUICKEST)
+SENSOR = nominal("hapkit", wired=1, checked=1, ident=0x3F2A, date=20261120, metres_per_count=COUNT, speed_max=QUICKEST)
 SINES = sp.sin(2 * sp.pi * 0.83 * hl.t) + sp.sin(2 * sp.pi * 2.3 * hl.t) / 2
 MOTION = HandleMotion("two sines", 0.004 * SINES * (1 - sp.exp(-((hl.t / 0.1) ** 3))), 1.0)
 EVERY = 5  # ticks a sample of telemetry, whose frames are no part of the step that is measured

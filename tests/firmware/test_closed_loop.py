@@ -22,7 +22,7 @@ METHODS = {double_pendulum: "semi_implicit_euler"}
 def run(make, ticks, T):
     scene, options = make()
     options = options | ({"method": METHODS[make]} if make in METHODS else {})
-    slow = nominal("hapkit", checked=1, ident=1, date=20261120, speed_max=1.0)  # at 4 ms the sensor allows no more
+    slow = nominal("hapkit", wired=1, checked=1, ident=1, date=20261120, speed_max=1.0)  # at 4 ms the sensor allows no more
     with emulated_uno(HAND, T=T, settings=slow) as paddle:
         program = Paddle.program(paddle, scene, **options)
         log = paddle.run(program, duration=ticks * T)

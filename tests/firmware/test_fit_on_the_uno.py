@@ -83,7 +83,7 @@ def period_needed(make, every, promise):
 
 
 #: a slow handle, so that its magnet may be looked at every 10 ms
-SLOW = nominal("hapkit", checked=1, ident=0x3F2A, date=20261120, speed_max=0.4)
+SLOW = nominal("hapkit", wired=1, checked=1, ident=0x3F2A, date=20261120, speed_max=0.4)
 
 
 def holds(scene, options, T, every, sets=60, settings=SLOW, hand=HAND):
@@ -164,7 +164,7 @@ def test_every_offer_of_a_refusal_holds(make, T, promise):
 @pytest.mark.slow
 def test_edges_of_an_encoder_are_part_of_the_step():
     scene, options = clips()
-    kept = nominal("hapkit", checked=1, ident=1, date=20261120, sensor=1, metres_per_count=2e-5)
+    kept = nominal("hapkit", wired=1, checked=1, ident=1, date=20261120, sensor=1, metres_per_count=2e-5)
     fast = hl.Hand(m=0.05, b=60, k=8000, intent=lambda t: 0.02 * np.sin(45 * t))
     edges = 60_000
     T = 2e-3
@@ -178,7 +178,7 @@ def test_an_encoders_edges_are_counted_where_there_is_one():
     """As many as the speed limit allows: 2 m/s over 12.8 um are 156 250 in a second, of 95 cycles each."""
     costs = []
     for sensor in ("MAGNETORESISTIVE", "QUADRATURE"):
-        with emulated_uno(settings=nominal("hapkit", checked=1, ident=1, sensor=SENSORS[sensor])) as paddle:
+        with emulated_uno(settings=nominal("hapkit", wired=1, checked=1, ident=1, sensor=SENSORS[sensor])) as paddle:
             costs.append(paddle.cost(wall()[0]))
     without, edges = costs
     assert (without.edges, edges.edges) == (0.0, pytest.approx(95 * 2 / 12.8e-6, rel=0.05))

@@ -18,6 +18,7 @@ from host_driver import settings
 from hapticlab.compiler.engines import firmware_library, toolchain
 from hapticlab.compiler.engines.bytecode import encode as encode_program
 from hapticlab.compiler.tick.compile_scene import compile
+from hapticlab.device.board.settings import changed
 from hapticlab.device.link.messages import MESSAGES, STATES, TARGETS
 from hapticlab.device.link.wire import Decoder, encode
 from hapticlab.scene.notation.symbols import n, parameters, x
@@ -69,11 +70,12 @@ class Talk:
 
     def calibrate(self):
         self.hello()
-        data = KEPT.to_bytes()
-        self.send("BEGIN", TARGETS["SETTINGS"], len(data))
-        for at in range(0, len(data), PIECE):
-            self.send("DATA", at, rest=data[at : at + PIECE])
-        self.send("COMMIT", TARGETS["SETTINGS"], len(data), zlib.crc32(data[:-4]))
+        for kept in (changed(KEPT, wired=0, checked=0), KEPT):  # a new wiring, then confirmed
+            data = kept.to_bytes()
+            self.send("BEGIN", TARGETS["SETTINGS"], len(data))
+            for at in range(0, len(data), PIECE):
+                self.send("DATA", at, rest=data[at : at + PIECE])
+            self.send("COMMIT", TARGETS["SETTINGS"], len(data), zlib.crc32(data[:-4]))
 
     def hello(self):
         self.session = self.rng.getrandbits(31) + 1

@@ -33,7 +33,7 @@ def connect(image):
     open_paddles = []
 
     def connect(T=1e-3, **settings):
-        kept = nominal("hapkit", **{"checked": 1, "date": 20261120, "ident": 0x3F2A, **settings})
+        kept = nominal("hapkit", **{"wired": 1, "checked": 1, "date": 20261120, "ident": 0x3F2A, **settings})
         paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3, hand=Hand(m=0.1, b=2, k=50, push=1.0))
         board = Uno(image[1], eeprom=kept.to_bytes())
         loop = ClosedLoop.of(kept, board, PaddleHandle(paddle))
@@ -88,7 +88,7 @@ def test_the_store_takes_longer_than_the_watchdog_waits(connect):
     """3.4 ms a byte: settings are written while the tick runs on, and nothing resets the board."""
     paddle, loop = connect()
     session = paddle.state()["session"]
-    changed = nominal("hapkit", ident=0x1234, checked=1, wrap=900, force_max=2.5, m=0.07, b=0.4)
+    changed = nominal("hapkit", ident=0x1234, wired=1, checked=1, wrap=900, force_max=2.5, m=0.07, b=0.4)
     loop.board.eeprom = bytes(1024)  # so that every byte is written
     begin = loop.now
     upload(paddle.exchange, "SETTINGS", changed.to_bytes())

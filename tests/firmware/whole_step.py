@@ -53,7 +53,7 @@ class Watched(PaddleHandle):
 
 def watched_run(image, program, every=1):
     """Run on the emulated Uno; return the handle, the samples, costs of interrupts and the last requests' frames."""
-    kept = replace(nominal("hapkit"), checked=1)
+    kept = replace(nominal("hapkit"), wired=1, checked=1)
     with Uno(image, eeprom=kept.to_bytes()) as board:
         hand = hl.Hand(m=0.1, b=2, k=200, push=1.5)
         handle = Watched(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hand))
@@ -133,7 +133,7 @@ def awkward_more(elf, snapshots):
 
 def latest(image, values):
     """Return by how many cycles a tick was late at most while SETs came, one at every phase of the period."""
-    kept = replace(nominal("hapkit"), checked=1)
+    kept = replace(nominal("hapkit"), wired=1, checked=1)
     program, worst = compiled(wall, T=LATE_T), 0
     with Uno(image, eeprom=kept.to_bytes()) as board:
         handle = PaddleHandle(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(m=0.1, b=2, k=200)))

@@ -20,9 +20,21 @@ static hl_host *of(hl_core *core)
     return (hl_host *)(void *)core;
 }
 
-int32_t board_counts(hl_core *core)
+uint16_t board_reading(hl_core *core)
 {
-    return of(core)->counts;
+    const hl_host *host = of(core);
+    const int32_t wrap = core->settings.wrap;
+    if (core->settings.sensor == HL_SENSOR_QUADRATURE) {
+        return (uint16_t)host->counts;
+    }
+    return (uint16_t)(host->counts % wrap + (host->counts % wrap < 0 ? wrap : 0));
+}
+
+/* Nothing is wired to this computer. */
+uint8_t board_accepts(const hl_settings *settings)
+{
+    (void)settings;
+    return 1;
 }
 
 void board_motor(hl_core *core, int16_t duty)

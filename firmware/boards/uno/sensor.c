@@ -13,8 +13,6 @@
 #define CONVERSION (_BV(ADEN) | _BV(ADPS2) | _BV(ADPS0)) /* prescaler 32: 26 us */
 #define ENCODER_PINS (_BV(PIND2) | _BV(PIND3))
 
-static int32_t counts; /* only ever moved by differences: where they begin means nothing */
-static uint8_t first; /* there is no reading yet to compare with */
 static uint16_t last; /* of either sensor */
 
 static volatile uint16_t edges;
@@ -26,9 +24,8 @@ void board_configure(hl_core *core)
     uint8_t quadrature = core->settings.sensor == HL_SENSOR_QUADRATURE;
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
     {
-        first = 1;
         lost = 0;
-        edges = last = 0; /* counts go on from where they are */
+        edges = last = 0;
         ADMUX = _BV(REFS0) | _BV(MUX1); /* AVCC, ADC2 */
         ADCSRA = quadrature ? 0 : CONVERSION;
         DIDR0 = _BV(ADC2D);
@@ -64,52 +61,48 @@ ISR(INT0_vect)
 
 ISR(INT1_vect, ISR_ALIASOF(INT0_vect));
 
-static int16_t quadrature_step(hl_core *core)
+static uint16_t quadrature_reading(hl_core *core)
 {
-    uint16_t now;
     uint8_t missed;
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
     {
-        now = edges;
+        last = edges;
         missed = lost;
         lost = 0;
     }
-    int16_t step = (int16_t)(now - last);
-    last = now;
     if (missed)
-        hl_core_fault(core, HL_FAULT_SENSOR, (float)counts);
-    return step;
+        hl_core_fault(core, HL_FAULT_SENSOR, (float)last);
+    return last;
 }
 
-/* Readings rise and fall by `wrap` where the sensor turns over: more than half of that in one sample is a turn. */
-static int16_t magnetoresistive_step(hl_core *core)
+static uint16_t magnetoresistive_reading(hl_core *core)
 {
     while (ADCSRA & _BV(ADSC)) {
     }
     uint16_t reading = ADC;
-    int16_t wrap = (int16_t)core->settings.wrap;
     /* a sensor that uses all of the range has no band that says it is broken */
-    uint8_t banded = wrap <= READING_MAX - READING_MIN;
-    if (banded && (reading < READING_MIN || reading > READING_MAX)) {
+    uint8_t banded = core->settings.wrap <= READING_MAX - READING_MIN;
+    if (banded && (reading < READING_MIN || reading > READING_MAX))
         hl_core_fault(core, HL_FAULT_SENSOR, (float)reading);
-        return 0;
-    }
-    int16_t step = (int16_t)(reading - last);
-    last = reading;
-    if (first) {
-        first = 0;
-        return 0;
-    }
-    if (2 * step > wrap)
-        step = (int16_t)(step - wrap);
-    else if (2 * step < -wrap)
-        step = (int16_t)(step + wrap);
-    return step;
+    else
+        last = reading;
+    return last;
 }
 
-int32_t board_counts(hl_core *core)
+uint16_t board_reading(hl_core *core)
 {
-    int16_t step = ADCSRA & _BV(ADEN) ? magnetoresistive_step(core) : quadrature_step(core);
-    counts += step;
-    return counts;
+    return ADCSRA & _BV(ADEN) ? magnetoresistive_reading(core) : quadrature_reading(core);
+}
+
+#define PINS(first, second) (0xFFFF0000UL | (second) << 8 | (first))
+#define A2 16
+
+/* The wiring of a Hapkit, or an encoder in the place of its sensor. */
+uint8_t board_accepts(const hl_settings *s)
+{
+    if (s->drive != HL_DRIVE_PWM_DIRECTION || s->motor_pins != PINS(5UL, 8UL) || s->carrier != 62500)
+        return 0;
+    if (s->sensor == HL_SENSOR_QUADRATURE)
+        return s->sensor_pins == PINS(2UL, 3UL);
+    return s->sensor == HL_SENSOR_MAGNETORESISTIVE && s->wrap <= 1024 && s->sensor_pins == PINS((uint32_t)A2, (uint32_t)HL_NO_PIN);
 }

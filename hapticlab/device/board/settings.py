@@ -2,6 +2,7 @@
 
 import math
 import zlib
+from bisect import bisect
 from dataclasses import dataclass, fields, replace
 
 from ...base.facts import Fact
@@ -10,8 +11,10 @@ from ...errors import PaddleError
 from ..device import Device
 from ..link.messages import (
     COUNTS_MAX,
+    DRIVES,
     METRES_PER_COUNT_MIN,
     MOTOR_LAWS,
+    NO_PIN,
     SENSORS,
     SETTING_RANGES,
     SETTINGS,
@@ -23,9 +26,31 @@ from ..link.messages import (
 from ..profiles import profile as named_profile
 
 _CHOICES = {
-    "ident": range(1 << 16), "date": range(1 << 32), "checked": (0, 1), "motor_law": tuple(MOTOR_LAWS.values()),
-    "motor_sign": (1, -1), "sensor": tuple(SENSORS.values()), "wrap": range(1 << 32),
+    "ident": range(1 << 16), "date": range(1 << 32), "checked": (0, 1), "wired": (0, 1), "motor_sign": (1, -1),
+    "motor_law": tuple(MOTOR_LAWS.values()), "sensor": tuple(SENSORS.values()), "drive": tuple(DRIVES.values()),
+    "wrap": range(1 << 16), "carrier": range(1 << 32), "motor_pins": range(1 << 32), "sensor_pins": range(1 << 32),
 }  # fmt: skip
+
+
+def pin_word(*pins):
+    """Return up to four pins as settings keep them: one a byte, the first one lowest, the others none.
+
+    Examples
+    --------
+    >>> from hapticlab.device.board.settings import pin_word, pins_of
+    >>> pins_of(pin_word(5, 8))
+    (5, 8)
+    """
+    return int.from_bytes(bytes(pins).ljust(4, bytes([NO_PIN])), "little")
+
+
+def pins_of(word):
+    """Return the pins in a setting, without those that are none."""
+    return tuple(pin for pin in word.to_bytes(4, "little") if pin != NO_PIN)
+
+
+#: of an encoder, or of an angle sensor that nobody named
+NO_PINS = pin_word()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,11 +78,23 @@ class Settings(ShowsItself):
     speed_max: float
     motor_law: int = MOTOR_LAWS["LINEAR"]
     motor_sign: int = 1
+    duty_dead: float = 0.0
+    duty_25: float = 0.25
+    duty_50: float = 0.5
+    duty_75: float = 0.75
     sensor: int = SENSORS["QUADRATURE"]
     wrap: int = 1024
+    drive: int = DRIVES["PWM_DIRECTION"]
+    motor_pins: int = NO_PINS
+    sensor_pins: int = NO_PINS
+    carrier: int = 62500
+    wired: int = 0
     m: float = 0.0
     b: float = 0.0
     coulomb: float = 0.0
+    sensor_delay: float = 0.0
+    sensor_noise: float = 0.0
+    sensor_flight: float = 0.0
 
     def __post_init__(self):
         for name, (low, high) in SETTING_RANGES.items():
@@ -75,9 +112,18 @@ class Settings(ShowsItself):
         for name, allowed in _CHOICES.items():
             if getattr(self, name) not in allowed:
                 raise PaddleError(f"{name} = {getattr(self, name)!r}; needs {_spoken(allowed)}.")
-        if self.sensor == SENSORS["MAGNETORESISTIVE"] and not WRAP_MIN <= self.wrap <= WRAP_MAX:
+        if self.sensor != SENSORS["QUADRATURE"] and not WRAP_MIN <= self.wrap <= WRAP_MAX:
+            raise PaddleError(f"wrap = {self.wrap}; an angle sensor needs {WRAP_MIN} to {WRAP_MAX} counts until it repeats.")
+        curve = self._curve()
+        if self.motor_law == MOTOR_LAWS["MEASURED"] and any(a >= b for a, b in zip(curve, curve[1:], strict=False)):
             raise PaddleError(
-                f"wrap = {self.wrap}; a magnetoresistive sensor needs {WRAP_MIN} to {WRAP_MAX} counts per half turn."
+                f"duty_dead, duty_25, duty_50, duty_75 = {', '.join(f'{a:g}' for a in curve[:-1])}; a larger force needs a "
+                "larger duty, and the largest stays below 1. Measure the force again."
+            )
+        if self.checked > self.wired:
+            raise PaddleError(
+                "checked = 1 with wired = 0; the motor's sign is checked after its wiring is confirmed. Use checked=0, or "
+                "wired=1 where the wiring was confirmed."
             )
 
     def to_bytes(self):
@@ -108,10 +154,32 @@ class Settings(ShowsItself):
         counts = 1 / abs(self.metres_per_count)
         return Device(m=self.m, b=self.b, T=T, coulomb=self.coulomb, counts_per_metre=counts) if self.m else Device(T=T)
 
+    def duty(self, force, steps=None):
+        """Return the duty, -1 ... 1, that a board gives for a force at the handle [N]; rounded where it has so many steps."""
+        part = min(abs(force) / self.force_full, 1.0)
+        if part == 0:
+            return 0.0
+        if self.motor_law == MOTOR_LAWS["MEASURED"]:
+            duty = _between(_PARTS, self._curve(), part)
+        else:
+            duty = self.duty_dead + (1 - self.duty_dead) * (part**0.5 if self.motor_law == MOTOR_LAWS["SQRT"] else part)
+        duty = duty if steps is None else int(duty * steps + 0.5) / steps
+        return math.copysign(duty, force) * self.motor_sign
+
     def force_of_duty(self, duty):
-        """Return the force [N] at the handle of a duty in -1 ... 1, the motor's law undone."""
-        part = abs(duty) if self.motor_law == MOTOR_LAWS["LINEAR"] else duty * duty
+        """Return the force [N] at the handle of a duty in -1 ... 1, the motor's law undone; none within its dead band."""
+        part, dead = min(abs(duty), 1.0), self.duty_dead
+        if part <= dead:
+            return 0.0
+        if self.motor_law == MOTOR_LAWS["MEASURED"]:
+            part = _between(self._curve(), _PARTS, part)
+        else:
+            part = (part - dead) / (1 - dead)
+            part = part * part if self.motor_law == MOTOR_LAWS["SQRT"] else part
         return math.copysign(part * self.force_full, duty) * self.motor_sign
+
+    def _curve(self):
+        return self.duty_dead, self.duty_25, self.duty_50, self.duty_75, 1.0
 
     def _sentence(self):
         found = "nominal constants, nothing measured on this paddle" if self.is_nominal else f"calibrated on {self.date}"
@@ -127,14 +195,27 @@ class Settings(ShowsItself):
         return "\n".join([*lines, "nominal: no value here was measured on this paddle"] if self.is_nominal else lines)
 
 
+#: of the full force, along the measured curve
+_PARTS = (0.0, 0.25, 0.5, 0.75, 1.0)
+
+
+def _between(xs, ys, x):
+    """Return y at x, on straight lines between points."""
+    k = min(max(bisect(xs, x), 1), len(xs) - 1)
+    return ys[k - 1] + (x - xs[k - 1]) * (ys[k] - ys[k - 1]) / (xs[k] - xs[k - 1])
+
+
 #: what the profiles do not say. Hapkit: KMA210 on its nominal 920 counts per half turn, 12.8 um per count; the square-root
 #: law and 8 N at full duty are of the published sketches; travel, heating and speed are guesses that keep a motor cool
 _NOMINAL = {
     "hapkit": {
         "travel_min": -0.05, "travel_max": 0.05, "force_full": 8.0, "force_continuous": 2.0, "heating_time": 60.0,
         "speed_max": 2.0, "motor_law": MOTOR_LAWS["SQRT"], "sensor": SENSORS["MAGNETORESISTIVE"], "wrap": 920,
+        "motor_pins": pin_word(5, 8),
     },
 }  # fmt: skip
+#: where a Hapkit has its sensor (A2), and an Uno an encoder or the chip select of an AS5048A instead
+_SENSOR_PINS = {"MAGNETORESISTIVE": pin_word(16), "QUADRATURE": pin_word(2, 3), "AS5048A": pin_word(10)}
 
 
 def _spoken(allowed):
@@ -156,13 +237,16 @@ def nominal(profile, **changes):
         raise PaddleError(f"no nominal settings for {profile!r}; they exist for {', '.join(_NOMINAL)}.")
     kind = named_profile(profile)
     known = {"metres_per_count": 1 / kind.counts_per_metre, "force_max": kind.force_max, "m": kind.m, "b": kind.b}
-    return Settings(**{**known, "coulomb": kind.coulomb, **_NOMINAL[profile], **changes})
+    values = {**known, "coulomb": kind.coulomb, **_NOMINAL[profile], **changes}
+    usual = {SENSORS[name]: pins for name, pins in _SENSOR_PINS.items()}.get(values["sensor"], NO_PINS)
+    return Settings(**{"sensor_pins": usual, **values})
 
 
 def simulated(paddle):
     """Return the settings of a board around a simulated paddle: ideal where the paddle says nothing."""
     full = paddle.force_max or 20.0
     return Settings(
+        wired=1,
         checked=1,
         metres_per_count=1 / (paddle.counts_per_metre or 1e7),  # without an encoder a tenth of a micrometre
         travel_min=-0.5, travel_max=0.5, force_full=full, force_max=full, force_continuous=full, heating_time=60.0,

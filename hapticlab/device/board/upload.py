@@ -54,7 +54,7 @@ def check_room(board, settings, program):
 def check_period(board, T, settings=None):
     """Refuse a period [s] that the board's timer cannot do, or, by its settings, its sensor; name the nearest it can."""
     low, high, why = board["period_min"] * 1e-6, board["period_max"] * 1e-6, ""
-    if settings is not None and settings.sensor == SENSORS["MAGNETORESISTIVE"]:
+    if settings is not None and settings.sensor != SENSORS["QUADRATURE"]:
         # the sensor is read once a period; 3/8 of its counts a period are what the firmware still tells from a turn over
         unseen = 0.375 * settings.wrap * abs(settings.metres_per_count) / settings.speed_max
         if high > unseen:

@@ -9,7 +9,7 @@ from pathlib import Path
 from . import messages as tables
 
 NOTICE = "/* Written by hapticlab/device/link/message_headers.py: change the Python tables, not this file. */\n"
-C_TYPES = {"B": "uint8_t", "H": "uint16_t", "I": "uint32_t", "i": "int32_t", "f": "float", "8s": "bytes"}
+C_TYPES = {"B": "uint8_t", "H": "uint16_t", "I": "uint32_t", "i": "int32_t", "b": "int8_t", "f": "float", "8s": "bytes"}
 
 
 def generate():
@@ -39,7 +39,7 @@ def generate():
     for prefix, table in (
         ("HL_STATE_", tables.STATES), ("HL_TARGET_", tables.TARGETS), ("HL_FLAG_", tables.FLAGS),
         ("HL_SAMPLE_", tables.SAMPLE_FLAGS), ("HL_OPTION_", tables.OPTIONS), ("HL_SENSOR_", tables.SENSORS),
-        ("HL_MOTOR_", tables.MOTOR_LAWS),
+        ("HL_DRIVE_", tables.DRIVES), ("HL_MOTOR_", tables.MOTOR_LAWS),
         ("HL_RESET_", {name: number for name, (number, _) in tables.RESET_CAUSES.items()}),
     ):  # fmt: skip
         lines += _enum(prefix, table)
@@ -63,15 +63,27 @@ def _offsets():
 
 
 def _settings():
-    """Return the settings as a struct: every member has 4 bytes, so that no compiler pads it."""
-    rows = [f"    {C_TYPES[type]} {name}; /* [{unit}] {meaning} */" for type, name, unit, meaning in tables.SETTINGS]
-    ranges = [f"    X({name}, {low!r}f, {high!r}f) \\" for name, (low, high) in tables.SETTING_RANGES.items()]
+    """Return the settings as structs: what the loop works with, and the whole record around it."""
+    loop = [name for _, name, *_ in tables.LOOP_SETTINGS]
+    paths = {name: f"loop.{name}" if name in loop else name for name in tables.SETTING_RANGES}
+    ranges = [f"    X({paths[name]}, {low!r}f, {high!r}f) \\" for name, (low, high) in tables.SETTING_RANGES.items()]
+    wiring = tables.struct.calcsize("<" + "".join(type for type, name, *_ in tables.LOOP_SETTINGS if name in tables.WIRING))
     return [
-        "/* what survives power-off */", "typedef struct {", *rows, "} hl_settings;", "",
+        "/* what the loop works with */", "typedef struct {", *_members(tables.LOOP_SETTINGS), "} hl_settings;", "",
+        "/* what survives power-off */", "typedef struct {", *_members(tables.SETTINGS[:1]), "    hl_settings loop;",
+        *_members(tables.SETTINGS[1 + len(loop) :]), "} hl_record;", "",
+        f"#define HL_RECORD_BYTES {tables.SETTINGS_STRUCT.size} /* on the wire and in the store: no compiler may pad it */",
+        f"#define HL_NO_PIN {tables.NO_PIN}",
         f"#define HL_METRES_PER_COUNT_MIN {tables.METRES_PER_COUNT_MIN}f", f"#define HL_COUNTS_MAX {tables.COUNTS_MAX}f",
         f"#define HL_WRAP_MIN {tables.WRAP_MIN}", f"#define HL_WRAP_MAX {tables.WRAP_MAX}", "",
-        "/* X(name, lowest, highest) */", "#define HL_SETTING_RANGES(X) \\", *ranges[:-1], ranges[-1].removesuffix(" \\"), "",
+        f"#define HL_WIRING_BYTES {wiring} /* what a person confirms, from {tables.WIRING[0]} on */", "",
+        "/* X(member of the record, lowest, highest) */", "#define HL_SETTING_RANGES(X) \\", *ranges[:-1],
+        ranges[-1].removesuffix(" \\"), "",
     ]  # fmt: skip
+
+
+def _members(rows):
+    return [f"    {C_TYPES[type]} {name}; /* [{unit}] {meaning} */" for type, name, unit, meaning in rows]
 
 
 if __name__ == "__main__":

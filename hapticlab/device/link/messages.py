@@ -120,6 +120,7 @@ RESULTS = {
         "shorter T, a lower speed_max (calibrate), or a quadrature encoder",
     ),
     "HOT": (46, "the motor is hot from earlier forces: let it cool for some minutes"),
+    "NOT_WIRED": (48, "nobody has confirmed the wiring of this paddle: run `hapticlab calibrate`"),
 }
 
 #: number -> what it is, cause, cure; every one of them leaves the motor off
@@ -161,15 +162,20 @@ RESET_CAUSES = {
     "BROWN_OUT": (3, "the supply fell too low: check the power supply and its plug"),
     "WATCHDOG": (4, "the firmware hung and the hardware watchdog reset it: report this with the scene"),
 }
-SENSORS = {"MAGNETORESISTIVE": 0, "QUADRATURE": 1}
-MOTOR_LAWS = {"LINEAR": 0, "SQRT": 1}
+#: readings of the first and the last repeat after `wrap` counts; the second is a running count
+SENSORS = {"MAGNETORESISTIVE": 0, "QUADRATURE": 1, "AS5048A": 2}
+#: how a motor's driver is told: PWM and direction; two inputs, of which one has the PWM and the other is low; two inputs
+#: for the direction, and the PWM on an enable; the same with inputs that a shift register holds (motor shield)
+DRIVES = {"PWM_DIRECTION": 0, "TWO_INPUTS": 1, "TWO_INPUTS_ENABLE": 2, "SHIFT_REGISTER": 3}
+#: duty grows with the force, with its square root, or along the measured curve duty_dead, duty_25, duty_50, duty_75, 1
+MOTOR_LAWS = {"LINEAR": 0, "SQRT": 1, "MEASURED": 2}
+#: what a person confirms before a motor may be driven. Pins are 4 bytes, the first one lowest, NO_PIN for none
+WIRING = ("motor_pins", "sensor_pins", "carrier", "sensor", "drive")
+NO_PIN = 255
 
-#: what the board keeps over power-off, 4 bytes each: (struct type, name, unit, meaning)
-SETTINGS = (
-    ("I", "layout", "1", "CRC-32 of this table, so that settings of another firmware are not taken for these"),
-    ("I", "ident", "1", "16 bits that name this very paddle"),
-    ("I", "date", "1", "of calibration, as 20261120; 0: never calibrated"),
-    ("I", "checked", "1", "1 once the motor's sign was seen to be right"),
+#: what the loop works with, (struct type, name, unit, meaning): large numbers first, so that no compiler pads the struct,
+#: and WIRING in one piece
+LOOP_SETTINGS = (
     ("f", "metres_per_count", "m", "handle travel of one count; its sign makes x grow into the wall"),
     ("f", "travel_min", "m", "position of the lower stop"),
     ("f", "travel_max", "m", "position of the upper stop"),
@@ -178,13 +184,33 @@ SETTINGS = (
     ("f", "force_continuous", "N", "the largest force the motor stands for ever"),
     ("f", "heating_time", "s", "time constant of the motor's heating"),
     ("f", "speed_max", "m/s", "faster than this is a fault"),
-    ("I", "motor_law", "1", "duty from force: MOTOR_LAWS"),
-    ("i", "motor_sign", "1", "1, or -1 where the motor's wires are swapped"),
-    ("I", "sensor", "1", "SENSORS"),
-    ("I", "wrap", "1", "counts of a magnetoresistive sensor over half a turn"),
+    ("f", "duty_dead", "1", "part of full duty below which the motor gives no force"),
+    ("f", "duty_25", "1", "part of full duty for a quarter of force_full, where the law is MEASURED"),
+    ("f", "duty_50", "1", "part of full duty for half of force_full, where the law is MEASURED"),
+    ("f", "duty_75", "1", "part of full duty for three quarters of force_full, where the law is MEASURED"),
+    ("I", "motor_pins", "1", "pins of the motor's driver, one a byte"),
+    ("I", "sensor_pins", "1", "pins of the sensor, one a byte"),
+    ("I", "carrier", "Hz", "frequency of the PWM, rounded to what the board's timer can do"),
+    ("B", "sensor", "1", "SENSORS"),
+    ("B", "drive", "1", "how the motor's driver is told: DRIVES"),
+    ("H", "wrap", "1", "counts after which the reading of an angle sensor repeats"),
+    ("B", "wired", "1", "1 once a person has confirmed the wiring"),
+    ("B", "checked", "1", "1 once the motor's sign was seen to be right"),
+    ("B", "motor_law", "1", "duty from force: MOTOR_LAWS"),
+    ("b", "motor_sign", "1", "1, or -1 where the motor's wires are swapped"),
+)
+#: what a board keeps over power-off: of the fields behind the loop's it knows where they are, and no more
+SETTINGS = (
+    ("I", "layout", "1", "CRC-32 of this table, so that settings of another firmware are not taken for these"),
+    *LOOP_SETTINGS,
+    ("I", "ident", "1", "16 bits that name this very paddle"),
+    ("I", "date", "1", "of calibration, as 20261120; 0: never calibrated"),
     ("f", "m", "kg", "effective mass, for the computer's models"),
     ("f", "b", "N s/m", "viscous damping, for the computer's models"),
     ("f", "coulomb", "N", "Coulomb friction, for the computer's models"),
+    ("f", "sensor_delay", "s", "age of the sensor's reading, for the computer's models"),
+    ("f", "sensor_noise", "m", "standard deviation of the sensor's noise, for the computer's models"),
+    ("f", "sensor_flight", "s", "time in which an angle sensor goes from its last count back to its first"),
     ("I", "crc", "1", "CRC-32 of all before it"),
 )
 SETTINGS_STRUCT = struct.Struct("<" + "".join(type for type, *_ in SETTINGS))
@@ -192,11 +218,13 @@ SETTINGS_STRUCT = struct.Struct("<" + "".join(type for type, *_ in SETTINGS))
 SETTING_RANGES = {
     "metres_per_count": (-0.1, 0.1), "travel_min": (-1e3, 1e3), "travel_max": (-1e3, 1e3), "force_full": (1e-6, 1e6),
     "force_max": (1e-6, 1e6), "force_continuous": (1e-6, 1e6), "heating_time": (1.0, 1e6), "speed_max": (1e-6, 1e6),
-    "m": (0.0, 1e6), "b": (0.0, 1e6), "coulomb": (0.0, 1e6),
+    "duty_dead": (0.0, 0.5), "duty_25": (0.0, 1.0), "duty_50": (0.0, 1.0), "duty_75": (0.0, 1.0),
+    "m": (0.0, 1e6), "b": (0.0, 1e6), "coulomb": (0.0, 1e6), "sensor_delay": (0.0, 1.0), "sensor_noise": (0.0, 1.0),
+    "sensor_flight": (0.0, 0.01),
 }  # fmt: skip
 METRES_PER_COUNT_MIN, COUNTS_MAX = 1e-12, 1e8
-#: counts of a magnetoresistive sensor
-WRAP_MIN, WRAP_MAX = 16, 4096
+#: counts of an angle sensor
+WRAP_MIN, WRAP_MAX = 16, 16384
 
 #: the loop's own limits
 HOST_SILENCE_MS = 100
@@ -220,7 +248,7 @@ def table_hash():
     """Return the CRC-32 of every table that a board and this package must agree on, the machine's included."""
     messages = [(name, m.number, m.fields, m.guarded, m.open) for name, m in MESSAGES.items()]
     numbers = [(name, row[0]) for table in (RESULTS, FAULTS, RESET_CAUSES) for name, row in table.items()]
-    rest = (STATES, TARGETS, FLAGS, SAMPLE_FLAGS, OPTIONS, SENSORS, MOTOR_LAWS, SETTINGS)
+    rest = (STATES, TARGETS, FLAGS, SAMPLE_FLAGS, OPTIONS, SENSORS, DRIVES, MOTOR_LAWS, WIRING, NO_PIN, SETTINGS)
     rest += (SETTING_RANGES, METRES_PER_COUNT_MIN, COUNTS_MAX, WRAP_MIN, WRAP_MAX)
     limits = HOST_SILENCE_MS, UNCHECKED_FORCE_N, OVERRUNS_IN_A_ROW, OVERRUNS_PER_SECOND
     return zlib.crc32(repr((PROTOCOL, LARGEST_PAYLOAD, machine_hash(), messages, numbers, rest, limits)).encode())

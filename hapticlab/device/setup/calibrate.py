@@ -85,7 +85,13 @@ def _begin(paddle, person):
     )
     sensor = SENSORS["MAGNETORESISTIVE" if kind == "hapkit" else "QUADRATURE"]
     begun = nominal("hapkit", sensor=sensor, ident=_named(0))
-    return offer(paddle, person, begun, ["to store   nominal constants of a Hapkit, motor at 0.5 N at most, to begin with"])
+    stored = offer(paddle, person, begun, ["to store   nominal constants of a Hapkit, motor at 0.5 N at most, to begin with"])
+    return stored and offer(
+        paddle,
+        person,
+        changed(begun, wired=1),
+        ["to store   wiring confirmed: driver's PWM on D5, direction on D8; sensor on A2, or encoder on D2 and D3"],
+    )
 
 
 def _named(ident):

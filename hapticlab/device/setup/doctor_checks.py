@@ -187,7 +187,7 @@ def sensor_moved(paddle, person):
         cure = "check the sensor's wires (A2, or D2 and D3), that its magnet is there and turns, and the kind of sensor"
         return Check("sensor", "fault", f"{sweep:.0f} counts while the handle was moved back and forth", cure)
     kept = paddle.settings
-    wraps = f", {sweep / kept.wrap:.1f} turns of {kept.wrap}" if kept and kept.sensor == SENSORS["MAGNETORESISTIVE"] else ""
+    wraps = f", {sweep / kept.wrap:.1f} turns of {kept.wrap}" if kept and kept.sensor != SENSORS["QUADRATURE"] else ""
     words = f"{sweep:.0f} counts from end to end{wraps}, largest jump {jump:.0f}"
     if jump <= JUMP:
         return Check("sensor", "ok", words)

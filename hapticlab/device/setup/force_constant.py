@@ -5,7 +5,7 @@ from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
 from ..board.settings import changed
 from ..link.messages import MOTOR_LAWS, UNCHECKED_FORCE_N
-from .force_fit import duty_of, fit_force
+from .force_fit import fit_force, law_of
 from .person import number
 from .stored_settings import lead_home
 
@@ -28,7 +28,7 @@ def largest_force(settings):
 def measure_force(paddle, person):
     """Lead a person through a measurement, and return the new settings and what was found, in lines."""
     lead_home(paddle, person)
-    settings, law = paddle.settings, next(name for name, k in MOTOR_LAWS.items() if k == paddle.settings.motor_law)
+    settings = paddle.settings
     if not settings.checked:
         person.say(
             f"The sign of the motor is not checked yet, so forces stay below {UNCHECKED_FORCE_N} N and the readings "
@@ -40,9 +40,9 @@ def measure_force(paddle, person):
     )
     with paddle.attended():
         forces, newtons = on_scale(paddle, person) if how == "scale" else with_weights(paddle, person)
-    duties = [duty_of(force, settings, paddle.board["duty_full"]) for force in forces]
-    found = fit_force(duties, newtons, law, intercept=how == "scale")
-    return changed(settings, force_full=found.force_full, motor_law=MOTOR_LAWS[found.law]), found.words(law)
+    duties = [abs(settings.duty(force, paddle.board["duty_full"])) for force in forces]
+    found = fit_force(duties, newtons, settings, intercept=how == "scale")
+    return changed(settings, force_full=found.force_full, motor_law=MOTOR_LAWS[found.law]), found.words(law_of(settings))
 
 
 def on_scale(paddle, person):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import PaddleError
+from ..board.settings import changed
 from ..link.messages import MOTOR_LAWS
 
 #: a fit is poor where its residual is more than this part of the range of forces, or this many newtons (3 g on a scale)
@@ -35,22 +36,15 @@ class ForceFit:
         return [*lines, f"kept       motor law {was}" + ("" if told else ", because so few points do not show the law")]
 
 
-def duty_of(force, settings, duty_full):
-    """Return the duty, 0 ... 1, that a board gives for a force [N]: its law, rounded to its steps."""
-    part = min(abs(force) / settings.force_full, 1.0)
-    part = part**0.5 if settings.motor_law == MOTOR_LAWS["SQRT"] else part
-    return int(part * duty_full + 0.5) / duty_full
-
-
-def fit_force(duties, forces, law, *, intercept=True):
-    """Fit force = offset + force_full g(duty), where g is duty (LINEAR) or its square (SQRT: duty is the root of force).
+def fit_force(duties, forces, settings, *, intercept=True):
+    """Fit force = offset + force_full part(duty), where the part of the full force is by the motor's law and dead band.
 
     Parameters
     ----------
     duties, forces : array_like, shape (points,)
         0 ... 1, and [N].
-    law : {"LINEAR", "SQRT"}
-        The board's. The other is taken only if it fits clearly better.
+    settings : Settings
+        The board's. LINEAR or SQRT in the place of its law is taken only if it fits clearly better; a MEASURED law stays.
     intercept : bool
         Whether an offset (tare, constant friction) is fitted.
 
@@ -61,17 +55,20 @@ def fit_force(duties, forces, law, *, intercept=True):
 
     Examples
     --------
+    >>> from hapticlab.device.board.settings import nominal
+    >>> from hapticlab.device.link.messages import MOTOR_LAWS
     >>> from hapticlab.device.setup.force_fit import fit_force
-    >>> found = fit_force([0, 0.1, 0.2, 0.3], [0.0, 0.4, 0.8, 1.2], "LINEAR")
+    >>> linear = nominal("hapkit", motor_law=MOTOR_LAWS["LINEAR"])
+    >>> found = fit_force([0, 0.1, 0.2, 0.3], [0.0, 0.4, 0.8, 1.2], linear)
     >>> round(found.force_full, 6), found.law
     (4.0, 'LINEAR')
     """
-    duties, forces = np.asarray(duties, float), np.asarray(forces, float)
-    fits = {name: _line(duties if name == "LINEAR" else duties**2, forces, intercept) for name in MOTOR_LAWS}
+    duties, forces, law = np.asarray(duties, float), np.asarray(forces, float), law_of(settings)
+    laws = (law,) if law == "MEASURED" else ("LINEAR", "SQRT")
+    fits = {name: _line(_parts(duties, settings, name), forces, intercept) for name in laws}
     if len(duties) < (4 if intercept else 3):
         fits = {name: (full, error, rms if name == law else np.nan, rest) for name, (full, error, rms, rest) in fits.items()}
-    other = next(name for name in fits if name != law)
-    best = other if CLEARLY * fits[other][2] < fits[law][2] else law
+    best = next((name for name in laws if CLEARLY * fits[name][2] < fits[law][2]), law)
     full, error, rms, rest = fits[best]
     _require_growth(full, forces)
     allowed = max(POOR_PART * np.ptp(forces), POOR_N)
@@ -84,6 +81,17 @@ def fit_force(duties, forces, law, *, intercept=True):
         )
     _require_sense(full, error)
     return ForceFit(full, error, best, {name: fit[2] for name, fit in fits.items()})
+
+
+def law_of(settings):
+    """Return the name of a board's motor law."""
+    return next(name for name, number in MOTOR_LAWS.items() if number == settings.motor_law)
+
+
+def _parts(duties, settings, law):
+    """Return the parts of the full force that duties give by a law."""
+    motor = changed(settings, motor_law=MOTOR_LAWS[law], motor_sign=1, force_full=1.0)
+    return np.array([motor.force_of_duty(duty) for duty in duties])
 
 
 def _line(g, forces, intercept):

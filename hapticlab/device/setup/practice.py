@@ -104,7 +104,7 @@ def practice_board() -> tuple[SerialPaddle, Person]:
     port.put_on(
         SimulatedPaddle(m=0.03, b=0.1, T=1e-3),
         settings=nominal("hapkit", metres_per_count=12.1e-6, force_full=7.0),
-        store=nominal("hapkit", ident=1).to_bytes(),
+        store=nominal("hapkit", ident=1, wired=1).to_bytes(),
     )
     port.wiring = -1
     board = SerialPaddle("sim://hapkit", port=port)

@@ -149,7 +149,7 @@ def _mechanics(at, paddle):
     if paddle is not None:
         return paddle, simulated(paddle)
     if at == "hapkit":
-        return SimulatedPaddle.from_profile("hapkit"), nominal("hapkit", checked=1)
+        return SimulatedPaddle.from_profile("hapkit"), nominal("hapkit", wired=1, checked=1)
     if at in PROFILES:
         found = SimulatedPaddle.from_profile(at)
         return found, simulated(found)

@@ -13,10 +13,14 @@ from hapticlab.compiler.engines.bytecode import layout
 from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.board.host_board import HostBoard
 from hapticlab.device.board.run import fault_words
-from hapticlab.device.link.messages import SENSORS
+from hapticlab.device.link.messages import SENSORS, SETTINGS_STRUCT
 from hapticlab.device.link.wire import encode
 from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
+
+#: behind two copies of the settings: whether a program is armed, two bytes of its size, the program
+STORE_ARMED = 2 * SETTINGS_STRUCT.size
+STORE_PROGRAM = STORE_ARMED + 4
 
 # ---------------------------------------------------------------- sessions and sequence
 
@@ -168,7 +172,7 @@ def test_data_after_commit_and_beyond_the_end_and_commit_after_a_reset():
     answers = {0: "SIZE", 4: "SIZE", 32768: "OK", 32769: "TOO_LARGE", 65535: "TOO_LARGE"}
     assert {size: host.ask("BEGIN", 0, size) for size in answers} == answers
     assert host.ask("BEGIN", 3, 10) == "RANGE"
-    assert host.ask("BEGIN", 2, 4096 - 100 + 1) == "TOO_LARGE"
+    assert host.ask("BEGIN", 2, 4096 - STORE_PROGRAM + 1) == "TOO_LARGE"
     reset = Host(HostBoard(host.board.store), session=host.session)
     reset.sent = dict(host.sent)
     assert reset.ask("COMMIT", 0, 100, 0) == "GUARD"
@@ -207,8 +211,11 @@ def test_start_is_refused_until_everything_is_known():
     assert host.set(_0=1.0) == "OK" and host.start() == "NO_VALUE"
     assert host.set(_1=1.0) == "OK" and host.start() == "NOT_CALIBRATED"
     assert host.ask("HOME", 0.0) == "NOT_CALIBRATED"
-    assert host.load(settings().to_bytes(), "SETTINGS") == "OK"
+    assert host.load(settings(wired=0, checked=0).to_bytes(), "SETTINGS") == "OK"
     assert host.start() == "NO_PROGRAM"  # settings pass through the place of a program
+    assert host.load(two_parameters()) == "OK" and host.set(_0=1.0, _1=1.0) == "OK"
+    assert host.start() == "NOT_WIRED"
+    assert host.load(settings().to_bytes(), "SETTINGS") == "OK"
     assert host.load(two_parameters()) == "OK" and host.set(_0=1.0, _1=1.0) == "OK"
     assert host.start() == "NOT_HOMED"
     assert [host.ask("HOME", at) for at in (math.nan, math.inf, 0.0501, -0.0501, 0.05)] == ["RANGE"] * 4 + ["OK"]
@@ -752,8 +759,8 @@ def test_a_store_that_was_cut_in_the_middle_of_writing_never_runs():
     before, old, new = settings().to_bytes(), fixed(0.5), fixed(0.25, k=2.0)
     kept = armed(old)
     data = encode_program(new, word_bits=16)
-    writes = [(96, b"\0"), *((100 + k, data[k : k + 1]) for k in range(len(data)))]
-    writes += [(97, struct.pack("<H", len(data))[:1]), (98, struct.pack("<H", len(data))[1:])]
+    writes = [(STORE_ARMED, b"\0"), *((STORE_PROGRAM + k, data[k : k + 1]) for k in range(len(data)))]
+    writes += [(STORE_ARMED + 1 + k, struct.pack("<H", len(data))[k : k + 1]) for k in range(2)]
     assert kept[: len(before)] == before and started(kept)
     wholes = {encode_program(program, word_bits=16) for program in (old, new)}
     store, ran = bytearray(kept), set()
@@ -763,10 +770,10 @@ def test_a_store_that_was_cut_in_the_middle_of_writing_never_runs():
             store[at : at + 1] = byte
         assert count == 0 or not started(bytes(store))
         store_armed = bytearray(store)
-        store_armed[96] = 0xA5
-        size = int.from_bytes(store[97:99], "little")
+        store_armed[STORE_ARMED] = 0xA5
+        size = int.from_bytes(store[STORE_ARMED + 1 : STORE_ARMED + 3], "little")
         if loads(bytes(store_armed)):
-            ran.add(bytes(store[100 : 100 + size]))
+            ran.add(bytes(store[STORE_PROGRAM : STORE_PROGRAM + size]))
     assert ran == wholes
 
 

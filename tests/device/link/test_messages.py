@@ -7,7 +7,7 @@ import pytest
 
 from hapticlab.compiler.engines import firmware_library
 from hapticlab.device.link import message_headers, messages
-from hapticlab.device.link.messages import MESSAGES, SETTINGS, SETTINGS_STRUCT, Message, fields
+from hapticlab.device.link.messages import LOOP_SETTINGS, MESSAGES, SETTINGS, WIRING, Message, fields
 
 
 def test_the_committed_header_is_fresh():
@@ -50,9 +50,15 @@ def test_every_offset_of_the_header_is_where_python_packs():
             assert f"HL_AT_{name}_{field.upper()} = {at}, /* {message_headers.C_TYPES[type]} */" in text
 
 
-def test_settings_are_words_of_four_bytes_that_end_with_their_crc():
-    assert SETTINGS_STRUCT.size == 4 * len(SETTINGS) <= 96  # HL_STORE_ARMED stands behind them
-    assert SETTINGS[0][1] == "layout" and SETTINGS[-1][1] == "crc"
+def test_settings_are_packed_as_a_compiler_lays_them_out_and_end_with_their_crc():
+    for rows in (LOOP_SETTINGS, SETTINGS):
+        types = "".join(type for type, *_ in rows)
+        assert struct.calcsize("<" + types) == struct.calcsize("=" + types) == struct.calcsize("@" + types) and "x" not in types
+        assert struct.calcsize("<" + types) % 4 == 0
+    assert SETTINGS[0][1] == "layout" and SETTINGS[-1][1] == "crc" and SETTINGS[1 : 1 + len(LOOP_SETTINGS)] == LOOP_SETTINGS
+    names = [name for _, name, *_ in LOOP_SETTINGS]
+    first = names.index(WIRING[0])
+    assert names[first : first + len(WIRING)] == list(WIRING)  # in one piece
 
 
 #: (table, what to make of it): every table that a board must agree on
@@ -67,7 +73,7 @@ CHANGES = {
     "FAULTS": lambda a: a | {"SENSOR": (99, "", "")},
     "RESET_CAUSES": lambda a: a | {"POWER": (99, "")},
     "SETTINGS": lambda a: (*a[:3], ("I", "other", "1", ""), *a[3:]),
-} | {name: lambda a: a | {"NEW": 64} for name in "STATES TARGETS FLAGS SAMPLE_FLAGS OPTIONS SENSORS MOTOR_LAWS".split()}
+} | {name: lambda a: a | {"NEW": 64} for name in "STATES TARGETS FLAGS SAMPLE_FLAGS OPTIONS SENSORS DRIVES MOTOR_LAWS".split()}
 
 
 @pytest.mark.parametrize("table", CHANGES)

@@ -10,18 +10,18 @@ from workbench import HOMING, STOP, STOPS, at, flicking, holding, holding_either
 
 from hapticlab.device.board.settings import Settings, nominal
 from hapticlab.device.board.upload import read_settings
-from hapticlab.device.link.messages import MOTOR_LAWS
+from hapticlab.device.link.messages import MOTOR_LAWS, SETTINGS_STRUCT
 from hapticlab.device.setup import stored_settings
 from hapticlab.device.setup.calibrate import calibrate
 from hapticlab.device.setup.force_constant import GRAVITY
-from hapticlab.device.setup.force_fit import duty_of, fit_force
+from hapticlab.device.setup.force_fit import fit_force
 from hapticlab.device.setup.sign_check import CLEAR, LOOKS, check_sign, intervals, judge, measure_sign
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import LinkError, PaddleError
 
 TODAY = 20261121
 YES = {"Store these settings": "yes"}
-KNOWN = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP)
+KNOWN = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, wired=1)
 
 
 def held_then(hand):
@@ -39,7 +39,7 @@ def tugged(hand):
 
 
 def kept_on_board(paddle):
-    return Settings.from_bytes(paddle.exchange.port.board.store[:80])
+    return Settings.from_bytes(paddle.exchange.port.board.store[: SETTINGS_STRUCT.size])
 
 
 class TestStops:
@@ -111,7 +111,7 @@ class TestStored:
         assert paddle.settings is None
         refusing = bench.Scripted(paddle, {"Which sensor": "hapkit", "Store these settings": "no"})
         assert calibrate(paddle, refusing, date=TODAY) is None
-        assert set(paddle.exchange.port.board.store[:80]) == {0xFF}
+        assert set(paddle.exchange.port.board.store[: SETTINGS_STRUCT.size]) == {0xFF}
         answers = STOPS | YES | {"Which sensor": "hapkit"}
         found = calibrate(paddle, bench.Scripted(paddle, answers), date=TODAY, only="stops")
         assert 0 < found.ident < 65536
@@ -254,12 +254,12 @@ def on_a_scale(**settings):
     }
 
 
-CHECKED = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, checked=1)
+CHECKED = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, wired=1, checked=1)
 
 
 class TestForce:
     @pytest.mark.parametrize("truth", [5.0, 8.0, 12.5])
-    @pytest.mark.parametrize("law", MOTOR_LAWS)
+    @pytest.mark.parametrize("law", ["LINEAR", "SQRT"])
     def test_a_scale_tells_constant_and_law(self, truth, law):
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=truth, motor_law=MOTOR_LAWS[law])
         person = bench.Scripted(paddle, HOMING | YES | on_a_scale())
@@ -363,24 +363,24 @@ class TestForce:
     def test_the_fit_is_numpys(self):
         duties, random = np.linspace(0.1, 0.9, 7), np.random.default_rng(2)
         forces = 0.2 + 5.0 * duties**2 + 0.01 * random.standard_normal(7)
-        found = fit_force(duties, forces, "SQRT")
+        found = fit_force(duties, forces, nominal("hapkit"))
         (slope, _), covariance = np.polyfit(duties**2, forces, 1, cov=True)
         assert found.force_full == pytest.approx(slope, rel=1e-12)
         assert found.error == pytest.approx(math.sqrt(covariance[0, 0]), rel=1e-9)
 
     def test_one_weight_tells_no_law(self):
-        found = fit_force([0.2], [0.3], "LINEAR", intercept=False)
+        found = fit_force([0.2], [0.3], nominal("hapkit", motor_law=MOTOR_LAWS["LINEAR"]), intercept=False)
         assert found.force_full == pytest.approx(1.5, rel=1e-12)
         assert "so few points do not show the law" in "\n".join(found.words("LINEAR"))
 
     @pytest.mark.parametrize("law", MOTOR_LAWS)
     def test_duties_are_the_boards(self, law):
-        paddle = bench.paddle(store=nominal("hapkit", checked=1, motor_law=MOTOR_LAWS[law]).to_bytes())
+        paddle = bench.paddle(store=nominal("hapkit", wired=1, checked=1, motor_law=MOTOR_LAWS[law]).to_bytes())
         person = bench.Scripted(paddle, HOMING)
         paddle.home(at=0.0)
         for force in (0.1, 0.73, 1.9):
             bench.force_shown(paddle, person, force, lambda person: "0")
-            assert paddle.exchange.port.seen_duty == pytest.approx(duty_of(force, paddle.settings, 32767), abs=1 / 32767)
+            assert paddle.exchange.port.seen_duty == pytest.approx(abs(paddle.settings.duty(force)), abs=1 / 32767)
 
 
 @pytest.mark.wide

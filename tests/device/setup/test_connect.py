@@ -87,7 +87,7 @@ def test_a_simulation_that_does_not_exist_says_which_do(url):
 
 
 def test_it_introduces_itself_in_a_line():
-    kept = hl.device.board.settings.nominal("hapkit", ident=0x3F2A, date=20261120, checked=1, force_max=5.0)
+    kept = hl.device.board.settings.nominal("hapkit", ident=0x3F2A, date=20261120, wired=1, checked=1, force_max=5.0)
     port = hl.device.link.serial_ports.open_port("sim://hapkit")
     port.put_on(None, settings=kept)
     with SerialPaddle("sim://hapkit", port=port, T=5e-4) as paddle:

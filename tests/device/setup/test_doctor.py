@@ -17,7 +17,7 @@ from hapticlab.device.setup.doctor import doctor
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import EngineMissingError, LinkError, PortError
 
-KNOWN = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, date=20261120)
+KNOWN = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, wired=1, date=20261120)
 UNO = Port("/dev/ttyACM0", "", 0x2341, 0x0043, "A1", "Arduino Uno R3")
 STRANGER = Port("/dev/ttyUSB7", "a mill")
 
