@@ -1,10 +1,12 @@
-"""What the command line does with a board: ports, doctor, flash, calibrate, and a scene run on it."""
+"""What the command line does with a board: ports, doctor, flash, calibrate, bench, and a scene run on it."""
 
 import json
 import sys
 from contextlib import nullcontext, redirect_stdout
 from functools import partial
 
+from ..device.bring_up.bench import bench as first_power_up
+from ..device.bring_up.practised import PractisingOwner
 from ..device.link.serial_ports import available_ports
 from ..device.setup.calibrate import calibrate as calibrate_paddle
 from ..device.setup.connect import connect
@@ -13,6 +15,7 @@ from ..device.setup.flash import flash as write_firmware
 from ..device.setup.person import Person, agrees
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
+from .exits import INTERRUPTED
 
 #: a simulated board has no motor that could hurt and no handle that a person could lead
 SIMULATED = "sim://"
@@ -62,6 +65,18 @@ def calibrate(parser, options):
         _tell_notices(paddle)
         kept = calibrate_paddle(paddle, person, only=options.only)
     return 0 if kept is not None else 1
+
+
+def bench(parser, options):
+    """Walk an owner through the first power-up and write one report; 0 only if it is whole and all came as predicted."""
+    person, simulated = Person(), _is_simulated(options.port)
+    _agree(options, person, "The motor will pull the handle by 0.4 N, and by up to 2 N in a last step that asks again.")
+    with connect(options.port) as paddle:
+        _tell_notices(paddle)
+        report = first_power_up(paddle, PractisingOwner(paddle) if simulated else person, tell=print)
+    page, data = report.save(options.out)
+    print(f"{report.sentence}\nThe report is in {page}, and as data in {data}")
+    return INTERRUPTED if report.ended.startswith("interrupted") else int(not report.is_whole)
 
 
 def _tell_notices(paddle):

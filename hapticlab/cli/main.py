@@ -1,4 +1,7 @@
-"""The command line: demo, labs, assign, grade, run FILE.py, tradeoff FILE.py, and of a paddle ports, doctor, flash, calibrate."""
+"""The command line: demo, labs, assign, grade, run FILE.py, tradeoff FILE.py, and of a paddle ports, doctor, flash, ...
+
+Each command is a function that `cli.options` names.
+"""
 
 import os
 import sys

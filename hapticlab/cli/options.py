@@ -158,6 +158,7 @@ def _add_board_commands(commands, shared):
         "doctor": "walk from the cable to the motor and say what is wrong",
         "flash": "write the firmware into a board, such as an Arduino Uno, over its bootloader",
         "calibrate": "measure stops, motor sign and force constant, and store them on the board",
+        "bench": "try a paddle step by step, motor off first, and write one report of what was predicted and found",
     }
     made = {}
     for name, text in words.items():
@@ -173,7 +174,10 @@ def _add_board_commands(commands, shared):
     made["flash"].add_argument("--board", metavar="NAME", default="uno", help="which board it is (default: %(default)s)")
     made["flash"].add_argument("--image", metavar="FILE.hex", help="by default the one that came with hapticlab")
     made["calibrate"].add_argument("--only", choices=STEPS, help="this step alone")
-    made["calibrate"].add_argument("--yes", action="store_true", help="do not ask before the motor moves")
+    for name in ("calibrate", "bench"):
+        made[name].add_argument("--yes", action="store_true", help="do not ask before the motor moves")
+    words = "write FILE.md, to read, and FILE.json, as data (default: %(default)s)"
+    made["bench"].add_argument("--out", metavar="FILE", default="hapticlab-bench", help=words)
 
 
 def _whole(least, what):

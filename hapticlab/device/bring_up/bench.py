@@ -1,0 +1,198 @@
+"""Walk an owner through the first power-up of a paddle, motor off first, and report what was predicted and found."""
+
+from __future__ import annotations
+
+import sys
+import zlib
+from contextlib import contextmanager
+from datetime import date
+from typing import TYPE_CHECKING, Any
+
+from ... import __version__
+from ...compiler.boards.board_records import BOARDS
+from ...compiler.engines.firmware_library import firmware_folder
+from ...errors import HapticlabError
+from ...scene.notation.symbols import parameters
+from ...scene.scene import Scene
+from ..board.serial_paddle import is_refusal
+from ..link.messages import RESET_CAUSES, row_of, table_hash
+from ..setup.connect import connect
+from . import forces, motor_off, stop_times
+from .limits import limits
+from .report import BenchReport, Finding
+from .steps import PULL, STEPS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..board.serial_paddle import SerialPaddle
+    from ..setup.person import Person
+
+#: in order; the limits of speed and travel are lowered once for two steps
+OFF = {
+    "link": motor_off.link,
+    "sensor at rest": motor_off.sensor_at_rest,
+    "sensor moved": motor_off.sensor_moved,
+}
+ON = {
+    "switch": stop_times.switch,
+    "host silent": stop_times.host_silent,
+    "STOP": stop_times.stop,
+    "Ctrl-C": stop_times.interrupt,
+    "not finite": stop_times.not_finite,
+    "over-speed": limits,
+    "cable": stop_times.cable,
+    "lag": forces.lag,
+    "force": forces.force,
+}
+WITH = {"over-speed": ("over-speed", "over-travel")}
+#: s of pulling before anything is tried
+SETTLES = 0.2
+
+
+class Bench:
+    """What the steps share: the paddle, the person, and how to pull the handle."""
+
+    def __init__(self, paddle, person):
+        self.paddle, self.person, self.lowered = paddle, person, False
+        self.ended = self.log = None  # the run that ended last, and its Telemetry
+
+    @property
+    def metres_per_count(self):
+        """Of the settings [m]; 1 where there are none."""
+        return abs(self.paddle.settings.metres_per_count) if self.paddle.settings else 1.0
+
+    def counts(self, positions):
+        """Positions [m] in counts."""
+        return positions / self.metres_per_count
+
+    def hold(self, more="Press Enter."):
+        """Ask for the handle to be held against a pull."""
+        self.person.ask(f"Hold the handle lightly in the middle. {more}")
+
+    @contextmanager
+    def pulled(self, scene=None):
+        """Start a scene, by default a light pull; what raises inside leaves no motor on."""
+        f = parameters("f", units="N")
+        with self.paddle.attended():
+            self.paddle.start(scene or Scene(force=f, name="light pull")(f=PULL), force_max=PULL)
+            self.paddle.wait(SETTLES)
+            yield self.paddle
+
+    def fault(self, seconds):
+        """Wait for a fault and end the run; return the fault's fields, or None."""
+        self.ended = run = self.paddle.under_way
+        self.paddle.exchange.wait(lambda: run.fault is not None, seconds)
+        self.log = self.paddle.stop()
+        return run.fault
+
+    def plug_in(self):
+        """Find the board again."""
+        again = getattr(self.person, "plug_in", None)
+        url, T = self.paddle.url, self.paddle.T
+        self.paddle.close()
+        self.paddle = again() if again else connect(url, T=T)
+
+
+def bench(paddle: SerialPaddle, person: Person, *, tell: Callable[[Any], Any] = lambda finding: None) -> BenchReport:
+    """Walk through the first power-up of a paddle and return what was found; the motor is off afterwards, always.
+
+    Parameters
+    ----------
+    paddle : SerialPaddle
+        Connected. One without settings is watched with its motor off only.
+    person : Person
+        The person who holds the handle, with a hand on the switch of the motor's supply.
+    tell : callable
+        Called with every Finding as it is made.
+
+    Returns
+    -------
+    BenchReport
+        Partial where Ctrl-C, the link or a switch that does not work ended it: ``ended`` then says where.
+
+    Notes
+    -----
+    The motor gives at most 0.4 N until the last step, which asks first. For two steps the limits of speed and travel that the
+    board stores are lowered, and put back. The position of the handle is asked for again after that and after the cable.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.device.bring_up.bench import bench
+    >>> from hapticlab.device.bring_up.practised import PractisingOwner
+    >>> with hl.connect("sim://hapkit") as board:
+    ...     report = bench(board, PractisingOwner(board))  # doctest: +ELLIPSIS
+    <BLANKLINE>
+    == supply off
+    ...
+    >>> report.ended, report["host silent", "fault"].found
+    ('whole', 'HOST_SILENT')
+    """
+    shared, made, ended, name = Bench(paddle, person), [], "whole", "supply off"
+    about = about_board(paddle)
+    try:
+        person.say(str(STEPS[name]))
+        person.ask("Switch off the supply of the motor, and press Enter.")
+        for name, measure in {**OFF, **ON}.items():
+            for finding in _findings(shared, name, measure):
+                made.append(finding)
+                tell(finding)
+            if name == "switch" and any(f.step == name and f.verdict == "differs" for f in made):
+                ended = "ended in the step 'switch': no step that needs the switch was done"
+                break
+    except KeyboardInterrupt:
+        ended = f"interrupted in the step {name!r}; the motor is off"
+    except HapticlabError as problem:
+        ended = f"ended in the step {name!r}; the motor is off: {problem}"
+    finally:
+        shared.paddle.abandon()
+    if shared.lowered:
+        ended += ". The board still stores the lower limits of the test: store the settings of this report again"
+    return BenchReport(about, tuple(made), ended)
+
+
+def _findings(bench, name, measure):
+    """Yield what one step finds; where the board or the package refuses it, that is what was found."""
+    if name in ON and bench.paddle.settings is None:
+        yield Finding.skipped(name, "the board has no settings: run `hapticlab calibrate`")
+        return
+    for shown in WITH.get(name, (name,)):
+        bench.person.say(str(STEPS[shown]))
+    try:
+        yield from measure(bench)
+    except HapticlabError as problem:
+        bench.paddle.abandon()
+        if not is_refusal(problem):
+            raise
+        yield Finding.seen(name, "the step", False, str(problem), "the board takes it")
+
+
+def about_board(paddle):
+    """Return what identifies board, firmware and settings; no person, no computer's name, no path."""
+    board, name = paddle.board, paddle.board["board"]
+    cause, meaning = row_of(RESET_CAUSES, board["reset_cause"]) or ("?", "unknown")
+    shipped = BOARDS[name].flashing if name in BOARDS else None
+    facts = {
+        "paddle": f"{name} {board['ident']:04X}",
+        "date": f"{date.today():%Y-%m-%d}",
+        "port": paddle.url.split("://")[0] if "://" in paddle.url else "serial",
+        "simulated": paddle.exchange.lockstep or paddle.url.startswith("sim://"),
+        "period": f"{paddle.T:g} s",
+        "hapticlab": __version__,
+        "firmware": f"{board['major']}.{board['minor']}, messages {board['table']:08x} (this package: {table_hash():08x})",
+        "image that comes with this package": _image(shipped),
+        "last reset": f"{cause}: {meaning}",
+        "pending before": "; ".join(paddle.notices) or "nothing",
+        "python": f"{sys.version_info.major}.{sys.version_info.minor} on {sys.platform}",
+        "settings": str(paddle.settings) if paddle.settings else "none",
+    }
+    return facts | ({"settings_hex": paddle.settings.to_bytes().hex()} if paddle.settings else {})
+
+
+def _image(flashing):
+    """Name and CRC-32 of an image's file; the board does not tell the CRC-32 of its own flash."""
+    if flashing is None:
+        return "none: this board is not flashed"
+    path = firmware_folder() / "prebuilt" / flashing.image
+    return f"{flashing.image}, CRC-32 {zlib.crc32(path.read_bytes()):08x}" if path.is_file() else f"{flashing.image} is missing"

@@ -1,0 +1,57 @@
+"""The last steps: how late the handle follows the motor, and what a scale shows of its force."""
+
+import math
+
+from ...scene.notation.symbols import parameters
+from ...scene.scene import Scene
+from ..setup.force_constant import on_scale
+from ..setup.force_fit import duty_of
+from ..setup.person import agrees
+from .lag import fit_lag
+from .report import Finding
+from .steps import PULL
+
+#: changes of the force, and how long each lasts [s]
+TUGS, LASTS = 40, 0.06
+#: by which a lag may miss what is predicted [s]: a sample of jitter
+LAG_MISS = 0.5e-3
+#: parts of a force, and newtons, by which a scale may differ
+FORCE_PART, FORCE_N = 0.1, 0.05
+
+
+def lag(bench):
+    """Tug the handle back and forth, and fit how late it follows."""
+    bench.hold("Hold it between two fingers, as loosely as you can.")
+    f = parameters("f", units="N")
+    with bench.pulled(Scene(force=f, name="tugs")(f=0.0)) as paddle:
+        for k in range(TUGS):
+            paddle.set(f=PULL * (-1) ** k)
+            paddle.wait(LASTS / 2 if k == 0 else LASTS)
+        log = paddle.stop()
+    if log.fault:
+        yield Finding.seen("lag", "the tugs", False, log.fault, "no fault was provoked")
+        return
+    changes = [(t, change["f"]) for t, change in log.changes if "f" in change]
+    found = fit_lag(log.t, log.x, changes)
+    low = log.delay + getattr(paddle.settings, "sensor_delay", 0.0)
+    source = "mean step of the board, and sensor_delay of its settings"
+    note = f"spread {found.spread:.2g} s"
+    yield Finding.of("lag", "force to motion", found.lag, "s", low - LAG_MISS, low + LAG_MISS, source, note)
+    source = "m of the settings, nominal unless identified; fingers add to it"
+    yield Finding.of("lag", "mass felt", found.mass, "kg", 0.5 * (paddle.settings.m or 0.0), math.inf, source)
+
+
+def force(bench):
+    """Press on a scale, if there is one."""
+    if not agrees(bench.person, "Do you have a kitchen scale here, to measure the force?"):
+        yield Finding.skipped("force", "no scale")
+        return
+    bench.person.ask("Rest the handle on the scale, with the paddle fixed to the table, and press Enter.")
+    with bench.paddle.attended():
+        forces, newtons = on_scale(bench.paddle, bench.person)
+    rest, full = newtons[0], bench.paddle.board["duty_full"]
+    for asked, shown in zip(forces, newtons, strict=True):
+        size, found = abs(asked), abs(shown - rest)
+        miss = FORCE_PART * size + FORCE_N
+        note = f"duty {abs(duty_of(asked, bench.paddle.settings, full)):.3f}"
+        yield Finding.of("force", f"force for {size:.3g} N", found, "N", max(0, size - miss), size + miss, "the settings", note)

@@ -1,0 +1,70 @@
+"""The steps that try the limits of speed and travel: both are lowered for the step, and put back after it."""
+
+import math
+from contextlib import contextmanager
+
+import numpy as np
+
+from ..board.settings import changed
+from ..setup.stored_settings import lead_home, store
+from .report import Finding
+from .steps import TRIED_SPEED, TRIED_TRAVEL
+from .stop_times import ACT, stopped
+
+#: part of the span beyond the travel that a stop may give: firmware/core/handle.c
+GIVES = 1 / 20
+
+
+def limits(bench):
+    """A flick, then a slow move: both end the pull."""
+    bench.person.ask("Hold the handle still in the middle, and press Enter.")
+    with lowered(bench):
+        yield from _over_speed(bench)
+        yield from _over_travel(bench)
+    lead_home(bench.paddle, bench.person)
+
+
+@contextmanager
+def lowered(bench):
+    """Store lower limits of speed and travel, and the former ones again whatever happens, as far as the link allows."""
+    kept = bench.paddle.settings
+    middle, part = (kept.travel_min + kept.travel_max) / 2, TRIED_TRAVEL
+    low, high = (middle + part * (stop - middle) for stop in (kept.travel_min, kept.travel_max))
+    bench.lowered = True
+    _store_held(bench.paddle, changed(kept, speed_max=min(TRIED_SPEED, kept.speed_max), travel_min=low, travel_max=high))
+    try:
+        yield
+    finally:
+        store(bench.paddle, kept)
+        bench.lowered = False
+
+
+def _store_held(paddle, settings):
+    """Store settings, and tell the board its position again, which its running count of the sensor still knows."""
+    before = paddle.state()
+    store(paddle, settings)
+    moved = paddle.state()["counts"] - before["counts"]
+    paddle.home(at=before["x"] + moved * settings.metres_per_count)
+
+
+def _over_speed(bench):
+    bench.hold(f"Press Enter, and then flick it to one side within {ACT:g} s.")
+    with bench.pulled() as paddle:
+        fault, run = bench.fault(ACT), bench.ended
+    yield from stopped(bench, "over-speed", fault, "OVER_SPEED", run.last_tick, 0, (run.every + 2) * paddle.T)
+    limit, step = paddle.settings.speed_max, bench.metres_per_count / paddle.T
+    fastest = float(np.max(np.abs(bench.log.v), initial=0.0)) if fault else math.inf
+    source = "the limit, and a count per period"
+    yield Finding.of("over-speed", "fastest sample before it", fastest, "m/s", 0, limit + step, source)
+
+
+def _over_travel(bench):
+    bench.hold(f"Press Enter, and then move it slowly towards a stop within {ACT:g} s.")
+    with bench.pulled() as paddle:
+        fault, run = bench.fault(ACT), bench.ended
+    yield from stopped(bench, "over-travel", fault, "OVER_TRAVEL", run.last_tick, 0, (run.every + 2) * paddle.T)
+    s = paddle.settings
+    most = (s.travel_max - s.travel_min) * (0.5 + GIVES) + s.speed_max * paddle.T
+    middle = (s.travel_min + s.travel_max) / 2
+    furthest = float(np.max(np.abs(bench.log.x - middle), initial=0.0)) if fault else math.inf
+    yield Finding.of("over-travel", "furthest sample before it", furthest, "m", 0, most, "the limit, and 1/20 that a stop gives")
