@@ -5,7 +5,6 @@ import math
 from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
 from ..setup.force_constant import on_scale
-from ..setup.force_fit import duty_of
 from ..setup.person import agrees
 from .lag import fit_lag
 from .report import Finding
@@ -33,7 +32,7 @@ def lag(bench):
         return
     changes = [(t, change["f"]) for t, change in log.changes if "f" in change]
     found = fit_lag(log.t, log.x, changes)
-    low = log.delay + getattr(paddle.settings, "sensor_delay", 0.0)
+    low = log.delay + paddle.settings.sensor_delay
     source = "mean step of the board, and sensor_delay of its settings"
     note = f"spread {found.spread:.2g} s"
     yield Finding.of("lag", "force to motion", found.lag, "s", low - LAG_MISS, low + LAG_MISS, source, note)
@@ -53,5 +52,5 @@ def force(bench):
     for asked, shown in zip(forces, newtons, strict=True):
         size, found = abs(asked), abs(shown - rest)
         miss = FORCE_PART * size + FORCE_N
-        note = f"duty {abs(duty_of(asked, bench.paddle.settings, full)):.3f}"
+        note = f"duty {abs(bench.paddle.settings.duty(asked, full)):.3f}"
         yield Finding.of("force", f"force for {size:.3g} N", found, "N", max(0, size - miss), size + miss, "the settings", note)

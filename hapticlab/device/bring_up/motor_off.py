@@ -25,8 +25,8 @@ MISS = 1 / 32
 def link(bench):
     """Look at the settings, time requests there and back, and watch the loop with the motor off."""
     paddle, times, kept = bench.paddle, [], bench.paddle.settings
-    checked = bool(kept and kept.checked)
-    yield Finding.seen("link", "motor's sign checked", checked, "yes" if checked else "no", "run `hapticlab calibrate` before")
+    for what, done in (("wiring confirmed", kept and kept.wired), ("motor's sign checked", kept and kept.checked)):
+        yield Finding.seen("link", what, bool(done), "yes" if done else "no", "run `hapticlab calibrate` before")
     for _ in range(PINGS):
         begun = paddle.exchange.now()
         paddle.exchange.ask("PING", secrets.randbits(32))
@@ -58,7 +58,7 @@ def sensor_at_rest(bench):
     """Noise of a handle that nobody touches."""
     bench.person.ask("Release the handle, and press Enter.")
     counts = bench.counts(bench.paddle.run(_watching(), REST, passive=True, progress=False).x)
-    noise = getattr(bench.paddle.settings, "sensor_noise", 0.0) / bench.metres_per_count
+    noise = bench.paddle.settings.sensor_noise / bench.metres_per_count if bench.paddle.settings else 0.0
     source = f"sensor_noise of the settings and {NOISY} counts"
     yield Finding.of("sensor at rest", "width", float(np.ptp(counts)), "counts", 0, NOISY + 8 * noise, source)
     yield Finding("sensor at rest", "rms", "counts", float(np.std(counts)))

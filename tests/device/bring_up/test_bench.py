@@ -9,7 +9,7 @@ from emulator import missing
 import hapticlab as hl
 from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.bring_up import bench as walk
-from hapticlab.device.bring_up import motor_off, steps
+from hapticlab.device.bring_up import limits, motor_off, steps, stop_times
 from hapticlab.device.bring_up.bench import OFF, ON, bench
 from hapticlab.device.bring_up.practised import PractisingOwner
 from hapticlab.device.bring_up.report import Finding
@@ -161,6 +161,8 @@ class TestPartial:
 class TestFaulty:
     def test_an_act_that_did_not_come_is_skipped_or_differs(self, paddle, monkeypatch):
         only(monkeypatch, "Ctrl-C", "cable", "over-speed")
+        for module in (limits, stop_times):
+            monkeypatch.setattr(module, "ACT", 2.0)
         nothing = {"press_Ctrl-C": lambda: None, "USB_cable_out": lambda: None, "flick": lambda: None}
         report = bench(paddle, Acts(paddle, **nothing))
         found = verdicts(report)
