@@ -14,16 +14,17 @@
  *   HL_CLOCK_HZ          of board_clock
  *   HL_DUTY_FULL         the largest duty
  *   HL_PERIOD_MIN_US, HL_PERIOD_MAX_US
+ *   HL_READING_BITS      32 where an encoder's count has 32 bits; 16 if it is not defined
  *   HL_STORE_BYTES       of the memory that survives power-off: two copies of the settings, the standalone program behind them */
 #ifndef HL_BOARD_H
 #define HL_BOARD_H
 
 #include "core.h"
 
-/* The handle's sensor, raw: an angle sensor's reading, which repeats after settings.wrap counts, or the low 16 bits of an
+/* The handle's sensor, raw: an angle sensor's reading, which repeats after settings.wrap counts, or the low bits of an
  * encoder's running count. Called once a tick; the core unwraps it, and judges what cannot be a motion. A sensor that
  * cannot be right calls hl_core_fault(core, HL_FAULT_SENSOR, reading) and returns what it returned before. */
-uint16_t board_reading(hl_core *core);
+hl_reading board_reading(hl_core *core);
 
 /* Whether this board can do that wiring: sensor, drive, pins and carrier; every number is within its range. */
 uint8_t board_accepts(const hl_settings *settings);

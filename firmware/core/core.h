@@ -15,6 +15,17 @@
 #error "a sample of HL_CHANNELS numbers is larger than HL_LARGEST_PAYLOAD"
 #endif
 
+/* A sensor's reading, and the way from one to another. Both turn over by themselves where an encoder's count does. */
+#if defined(HL_READING_BITS) && HL_READING_BITS == 32
+typedef uint32_t hl_reading;
+typedef int32_t hl_way;
+#define HL_WAY_SURE INT32_MAX /* counts a tick that are no turn */
+#else
+typedef uint16_t hl_reading;
+typedef int16_t hl_way;
+#define HL_WAY_SURE 24576
+#endif
+
 /* One tick for the link. */
 typedef struct {
     uint32_t tick;
@@ -74,7 +85,7 @@ typedef struct hl_core {
     uint8_t calibrated, homed, mismatch, armed, standalone;
 
     /* the handle */
-    uint16_t reading;          /* of the sensor, as it was taken last */
+    hl_reading reading;        /* of the sensor, as it was taken last */
     uint8_t unread;            /* there is no reading yet to compare with */
     int32_t counts, before;    /* at this tick, at the one before: readings, unwrapped, without bound */
     int32_t origin;            /* position = (counts - origin) * settings.metres_per_count */

@@ -13,23 +13,22 @@ static int32_t counts_of(const hl_core *core, float metres)
 }
 
 /* The way from one reading to the next: the nearest, as a sensor may have gone from its last count to its first. */
-static int16_t step_of(const hl_core *core, uint16_t from, uint16_t to)
+static hl_way way_of(const hl_core *core, hl_reading from, hl_reading to)
 {
-    const int16_t step = (int16_t)(to - from); /* a running count turns over by itself */
-    const int16_t wrap = (int16_t)core->settings.wrap;
+    const hl_way way = (hl_way)(to - from), wrap = (hl_way)core->settings.wrap;
     if (core->settings.sensor == HL_SENSOR_QUADRATURE) {
-        return step;
+        return way;
     }
-    return (int16_t)(2 * step > wrap ? step - wrap : 2 * step < -wrap ? step + wrap : step);
+    return (hl_way)(2 * way > wrap ? way - wrap : 2 * way < -wrap ? way + wrap : way);
 }
 
 /* Take the sensor's reading into counts, which grow and shrink with the position without bound. */
 void hl_handle_read(hl_core *core)
 {
-    const uint16_t reading = board_reading(core);
+    const hl_reading reading = board_reading(core);
     core->before = core->counts;
     if (!core->unread) {
-        core->counts = hl_moved(-step_of(core, core->reading, reading), core->counts);
+        core->counts = hl_moved(-(int32_t)way_of(core, core->reading, reading), core->counts);
     }
     core->reading = reading;
     core->unread = 0;
@@ -55,7 +54,7 @@ void hl_handle_limits(hl_core *core)
     core->limits.highest = high + margin;
     core->limits.speed = hl_handle_speed(core, core->period_us);
     /* of `wrap` counts half either way looks alike: an eighth is kept as margin */
-    core->limits.alias = s->sensor == HL_SENSOR_QUADRATURE ? INT32_MAX : (int32_t)s->wrap * 3 / 8;
+    core->limits.alias = s->sensor == HL_SENSOR_QUADRATURE ? HL_WAY_SURE : (int32_t)s->wrap * 3 / 8;
 }
 
 /* The handle is at this position now. */

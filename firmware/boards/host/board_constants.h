@@ -13,6 +13,7 @@
 #define HL_DUTY_FULL 32767
 #define HL_PERIOD_MIN_US 50
 #define HL_PERIOD_MAX_US 30000
+#define HL_READING_BITS 32 /* a simulated encoder may be as fine as an ideal one */
 #define HL_STORE_BYTES 4096
 
 #endif

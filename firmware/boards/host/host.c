@@ -20,14 +20,14 @@ static hl_host *of(hl_core *core)
     return (hl_host *)(void *)core;
 }
 
-uint16_t board_reading(hl_core *core)
+hl_reading board_reading(hl_core *core)
 {
     const hl_host *host = of(core);
     const int32_t wrap = core->settings.wrap;
     if (core->settings.sensor == HL_SENSOR_QUADRATURE) {
-        return (uint16_t)host->counts;
+        return (hl_reading)host->counts;
     }
-    return (uint16_t)(host->counts % wrap + (host->counts % wrap < 0 ? wrap : 0));
+    return (hl_reading)(host->counts % wrap + (host->counts % wrap < 0 ? wrap : 0));
 }
 
 /* Nothing is wired to this computer. */
