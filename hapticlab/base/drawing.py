@@ -183,10 +183,13 @@ def png(figure):
     return buffer.getvalue()
 
 
-def svg(figure):
-    """Return a figure as an SVG without a background, for the inside of a page; its letters are outlines."""
+def svg(figure, *, outlines=True):
+    """Return a figure as an SVG without a background, for the inside of a page; its letters are outlines, or text."""
+    from matplotlib import rc_context
+
     buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
+    with rc_context({} if outlines else {"svg.fonttype": "none", "svg.hashsalt": "hapticlab"}):  # a file is the same each time
+        figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
     # a style inside of an SVG is one of the whole page: every other drawing there would get these joins
     drawn = re.sub("<metadata>.*?</metadata>|<style.*?</style>", "", buffer.getvalue(), flags=re.S)
     drawn = drawn.replace("<g ", '<g stroke-linejoin="round" stroke-linecap="butt" ', 1)

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .board_pins import UNO_PINS, Pins
+
 
 @dataclass(frozen=True)
 class Usb:
@@ -76,6 +78,8 @@ class Board:
         Empty for a board that is modelled and was never on a port.
     flashing : Flashing, optional
         None where this package brings no firmware for it.
+    pins : Pins, optional
+        What a wiring may ask of it; None where this package brings no firmware for it.
     """
 
     name: str
@@ -86,6 +90,7 @@ class Board:
     T_max: float = 10e-3
     usb: tuple[Usb, ...] = ()
     flashing: Flashing | None = None
+    pins: Pins | None = None
 
 
 UNO = Board(
@@ -116,6 +121,7 @@ UNO = Board(
         page=128,
         bootloaders=(Bootloader("optiboot", 115200, 0x7E00), Bootloader("ATmegaBOOT (older Nano)", 57600, 0x7800)),
     ),
+    pins=UNO_PINS,
 )
 CORTEX_M0 = Board(name="cortex-m0+", hz=125e6, word_bits=8, arena=16_384, channels=16)
 CORTEX_M4 = Board(name="cortex-m4f", hz=168e6, word_bits=8, arena=16_384, channels=16)

@@ -7,16 +7,26 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ...base.drawing import bundle, svg
+from ...device.wirings import BUILDS
 from ...errors import CourseError
 from . import loop, paddle, sample_and_hold, signs
 from .pen import INK
+from .wiring import WiringSheet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from matplotlib.figure import Figure
 
-SHEETS = {"paddle": paddle, "loop": loop, "sample_and_hold": sample_and_hold, "signs": signs}
+SHEETS: dict[str, Any] = {"paddle": paddle, "loop": loop, "sample_and_hold": sample_and_hold, "signs": signs}
+SHEETS |= {f"wiring {name}": WiringSheet(build) for name, build in BUILDS.items()}
+
+
+#: of a file that stands alone: its ground and its ink
+GROUND = (
+    "<style>svg { background: #fff; color: #1b1b1b } "
+    "@media (prefers-color-scheme: dark) { svg { background: #111; color: #e8e8e8 } }</style>"
+)
 
 
 @dataclass(frozen=True)
@@ -33,6 +43,12 @@ class Drawing:
         figure = self.make()
         figure.alt = self.alt  # type: ignore[attr-defined]
         return figure
+
+    def page_svg(self) -> str:
+        """Return the drawing as an SVG file with a ground of its own, light or dark as the reader's system is."""
+        head, rest = svg(self.make(), outlines=False).replace(INK, "currentColor").split(">", 1)
+        words = f"<title>{html.escape(self.title)}</title><desc>{html.escape(self.alt)}</desc>"
+        return f"{head}>{GROUND}{words}{rest}"
 
     def __str__(self) -> str:
         return f"{self.title}. {self.alt}"
@@ -57,9 +73,10 @@ def drawing(name: str) -> Drawing:
 
     Parameters
     ----------
-    name : {"paddle", "loop", "sample_and_hold", "signs"}
+    name : {"paddle", "loop", "sample_and_hold", "signs", "wiring hapkit", ...}
         ``"paddle"``: its parts. ``"loop"``: sensor, computer and motor, with the forces of Fig. 23.5. ``"sample_and_hold"``:
-        position and held force over time, as in Fig. 23.6. ``"signs"``: the sign convention on one card.
+        position and held force over time, as in Fig. 23.6. ``"signs"``: the sign convention on one card. ``"wiring hapkit"``
+        and the others of hapticlab.device.wirings.BUILDS: every wire of a paddle, from pin to terminal.
 
     Returns
     -------

@@ -10,13 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import HapticlabError, LinkError, PaddleError, PortError
-from ...scene.notation.symbols import n, parameters, x
-from ...scene.scene import Scene
 from ..board.homing import state_flag
 from ..link.messages import RESET_CAUSES, SENSORS, row_of, table_hash
 from ..link.serial_ports import open_port
 from .flash import FLASHED, find_bootloader
 from .person import agrees
+from .sensor_readings import JUMP, LEAST_SWEEP, NOISY, readings, watch
 from .sign_check import check_sign
 from .stored_settings import lead_home
 
@@ -26,12 +25,6 @@ PINGS, SLOW, LAZY = 200, 4e-3, 8e-3
 LOOP, REST, MOVED = 2.0, 1.0, 6.0
 #: part of the period by which it may vary
 JITTER = 0.05
-#: counts: at rest no more than this is noise, and no less than this is a motion
-NOISY, LEAST_SWEEP = 6, 50
-#: counts by which a sensor may leave the straight line through its neighbours
-JUMP = 20
-#: part of the sweep at either end where a handle that hits its stop is no jump of the sensor
-STOPS_PART = 0.02
 
 
 @dataclass(frozen=True)
@@ -145,7 +138,7 @@ def _latency_cure(median):
 def loop_and_link(paddle):
     """Watch the loop for two seconds with the motor off; return its Check and the link's."""
     before = _damaged(paddle)  # the first hello of a board that has just been reset comes to it in part
-    log = _watch(paddle, LOOP)
+    log = watch(paddle, LOOP)
     timing, expected = paddle.timing, round(LOOP / paddle.T)
     jitter = max(timing.period_max - timing.T, timing.T - timing.period_min)
     bad = timing.overruns or jitter > JITTER * timing.T
@@ -164,7 +157,7 @@ def _damaged(paddle):
 
 def sensor_at_rest(paddle):
     """Noise of a handle that nobody touches, in counts."""
-    counts = _counts(paddle, _watch(paddle, REST))
+    counts = readings(paddle, REST).counts
     wide = float(np.ptp(counts))
     words = f"at rest {wide:.0f} counts wide, {np.std(counts):.2f} rms"
     if wide <= NOISY:
@@ -181,8 +174,8 @@ def sensor_moved(paddle, person):
     if person is None:
         return Check("sensor", "skipped", "whether it follows the handle: needs a person")
     person.ask(f"Press Enter, then move the handle slowly from stop to stop and back, for {MOVED:g} s. The motor is off.")
-    counts = _counts(paddle, _watch(paddle, MOVED))
-    sweep, jump = float(np.ptp(counts)), _largest_jump(counts)
+    seen = readings(paddle, MOVED)
+    sweep, jump = seen.sweep, seen.jump
     if sweep < LEAST_SWEEP:
         cure = "check the sensor's wires (A2, or D2 and D3), that its magnet is there and turns, and the kind of sensor"
         return Check("sensor", "fault", f"{sweep:.0f} counts while the handle was moved back and forth", cure)
@@ -225,21 +218,3 @@ def sign(paddle, person):
     found = check_sign(paddle, person)
     state = {"right": "ok", "wrong": "fault"}.get(found.verdict, "attention")
     return Check("motor", state, str(found), "" if state == "ok" else "run `hapticlab calibrate --only sign`")
-
-
-def _watch(paddle, seconds):
-    """Return the Telemetry of a handle watched with the motor off."""
-    k = parameters("k", units="N/m")
-    return paddle.run(Scene(force=k * x(n), name="watching")(k=0.0), duration=seconds, passive=True, progress=False)
-
-
-def _counts(paddle, log):
-    return log.x / (paddle.settings.metres_per_count if paddle.settings else 1.0)
-
-
-def _largest_jump(counts):
-    """Return the largest distance of a sample from the middle between its neighbours, in counts, away from both stops."""
-    stop = STOPS_PART * np.ptp(counts)
-    free = (counts[1:-1] > counts.min() + stop) & (counts[1:-1] < counts.max() - stop)
-    off = np.abs(counts[1:-1] - (counts[2:] + counts[:-2]) / 2)
-    return float(np.max(off, where=free, initial=0.0))

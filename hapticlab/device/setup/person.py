@@ -4,9 +4,12 @@ import math
 
 from ...errors import PaddleError
 
+#: options that are told by their first letters; more have numbers
+FEW = 3
+
 
 class Person:
-    """The person at this terminal. Others have the same three methods.
+    """The person at this terminal. Others have the same methods.
 
     Examples
     --------
@@ -30,14 +33,22 @@ class Person:
             raise PaddleError("there is no keyboard input here; run this in a terminal, with a person at the paddle") from None
 
     def choose(self, question, options):
-        """Return the key of one of the options, a dict {key: meaning}; the first letter is enough where it tells."""
-        self.say("\n".join([question, *(f"  {key:<8} {meaning}" for key, meaning in options.items())]))
+        """Return the key of one of the options, a dict {key: meaning}; a long list has numbers, else the first letter tells."""
+        numbers = {str(k): key for k, key in enumerate(options, 1)} if len(options) > FEW else {}
+        marks = [f"{k:>2} " for k in numbers] or [""] * len(options)
+        lines = [f"  {mark}{key:<14} {options[key]}".rstrip() for mark, key in zip(marks, options, strict=True)]
+        self.say("\n".join([question, *lines]))
         while True:
-            typed = self.ask(f"[{'/'.join(options)}]?").lower()
-            meant = [key for key in options if typed in (key, key[0])]
+            typed = self.ask(f"[1 to {len(options)}]?" if numbers else f"[{'/'.join(options)}]?").lower()
+            typed = numbers.get(typed, typed)
+            meant = [key for key in options if typed == key or (not numbers and typed == key[0])]
             if len(meant) == 1:
                 return meant[0]
             self.say(f"{typed!r} is not one of {', '.join(options)}")
+
+    def picture(self, build):
+        """Return where the drawing of a wiring is, in words, or None: on a terminal alone there is none."""
+        return None if build.name == "own" else f"hl.devices.drawing('wiring {build.name}') shows it in a notebook"
 
 
 def agrees(person, question):

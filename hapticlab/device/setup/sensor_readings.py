@@ -1,0 +1,65 @@
+"""What a sensor reads while the motor is off: counts of a handle that rests or is moved, and what is wrong with them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...scene.notation.symbols import n, parameters, x
+from ...scene.scene import Scene
+
+#: counts: at rest no more than this is noise, and no less than this is a motion
+NOISY, LEAST_SWEEP = 6, 50
+#: counts by which a sensor may leave the straight line through its neighbours
+JUMP = 20
+#: part of the sweep at either end where a handle that hits its stop is no jump of the sensor
+STOPS_PART = 0.02
+#: counts that one line of an encoder alone makes, and changes from which that is clear
+TO_AND_FRO, CHANGES = 2, 10
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Counts of a handle that was watched, shape (N,), and the fault that ended it or None."""
+
+    counts: np.ndarray
+    fault: str | None = None
+
+    @property
+    def sweep(self):
+        """From the least to the greatest [counts]."""
+        return float(np.ptp(self.counts)) if len(self.counts) else 0.0
+
+    @property
+    def travelled(self):
+        """From the first to the last [counts]."""
+        return float(self.counts[-1] - self.counts[0]) if len(self.counts) else 0.0
+
+    @property
+    def jump(self):
+        """Return the largest distance of a sample from the middle between its neighbours, away from both stops [counts]."""
+        counts, stop = self.counts, STOPS_PART * self.sweep
+        free = (counts[1:-1] > counts.min() + stop) & (counts[1:-1] < counts.max() - stop)
+        off = np.abs(counts[1:-1] - (counts[2:] + counts[:-2]) / 2)
+        return float(np.max(off, where=free, initial=0.0))
+
+    @property
+    def is_to_and_fro(self):
+        """Whether the count only goes up and down by one, as where one line of an encoder is missing."""
+        return 0 < self.sweep <= TO_AND_FRO and np.count_nonzero(np.diff(self.counts)) >= CHANGES
+
+
+def watch(paddle, seconds):
+    """Return the Telemetry of a handle watched with the motor off."""
+    k = parameters("k", units="N/m")
+    return paddle.run(Scene(force=k * x(n), name="watching")(k=0.0), duration=seconds, passive=True, progress=False)
+
+
+def readings(paddle, seconds):
+    """Watch the handle with the motor off and return its Readings."""
+    log = watch(paddle, seconds)
+    return Readings(counts_of(paddle, log), log.fault)
+
+
+def counts_of(paddle, log):
+    """Return the counts of a Telemetry."""
+    return log.x / (paddle.settings.metres_per_count if paddle.settings else 1.0)

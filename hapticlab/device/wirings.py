@@ -1,0 +1,281 @@
+"""Paddles as people build them: the wiring of each, its parts, where this is published, and every wire of it by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..base.shows_itself import ShowsItself
+from ..compiler.boards.board_pins import PINS, Pins
+from ..errors import PaddleError
+from .wiring import DRIVE_WORDS, SENSOR_WORDS, Wiring
+
+#: of a driver, on every drawing and table
+OUTPUTS, SUPPLY = ("OUT1", "OUT2"), ("V+", "GND")
+
+
+@dataclass(frozen=True)
+class Wire:
+    """One wire: the part and the terminal at either end, what it carries, and whether it is already there.
+
+    Attributes
+    ----------
+    begin, end : (str, str)
+        Part, "board", "driver", "sensor", "motor" or "supply", and its terminal.
+    carries : {"signal", "ground", "sensor supply", "motor"}
+    fixed : bool
+        True for a trace of a circuit board, or a plug of a shield: nothing to wire.
+    """
+
+    begin: tuple[str, str]
+    end: tuple[str, str]
+    carries: str
+    fixed: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Build(ShowsItself):
+    """A paddle as it is built: board, wiring, and the parts by their names.
+
+    Attributes
+    ----------
+    name : str
+    title : str
+        What it is, in words.
+    board : str
+        Of hapticlab.compiler.boards.board_pins.PINS.
+    wiring : Wiring
+    driver, sensor : str
+        The parts.
+    source : str
+        Where the pins are published, or that they are illustrative.
+    notes : tuple of str
+        What a person who wires it must know.
+    plugged : tuple of str
+        Parts that are on the board or plugged onto it: "driver", "sensor".
+    marked : dict of str to str
+        Terminals of driver and sensor that have another name printed beside them.
+    """
+
+    name: str
+    title: str
+    board: str
+    wiring: Wiring
+    driver: str
+    sensor: str
+    source: str
+    notes: tuple[str, ...] = ()
+    plugged: tuple[str, ...] = ()
+    marked: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def pins(self) -> Pins:
+        """What its board can do with its pins."""
+        return PINS[self.board]
+
+    def wires(self) -> tuple[Wire, ...]:
+        """Return every wire, those to the driver first.
+
+        Examples
+        --------
+        >>> from hapticlab.device.wirings import build
+        >>> [(wire.begin[1], wire.end[1]) for wire in build("l298").wires() if wire.end[0] == "driver"][:3]
+        [('D7', 'IN1'), ('D8', 'IN2'), ('D6', 'ENA')]
+        """
+        return (*self._to_driver(), *self._to_sensor(), *self._of_power())
+
+    def _to_driver(self):
+        fixed = "driver" in self.plugged
+        for role, pin in zip(self.wiring.motor_roles, self.wiring.motor_pins, strict=True):
+            yield Wire(("board", self.pins.name(pin)), ("driver", self._mark(role)), "signal", fixed)
+        yield Wire(("board", "GND"), ("driver", "GND"), "ground", fixed)
+
+    def _to_sensor(self):
+        fixed = "sensor" in self.plugged
+        yield Wire(("board", self.pins.supply), ("sensor", "VCC"), "sensor supply", fixed)
+        yield Wire(("board", "GND"), ("sensor", "GND"), "ground", fixed)
+        for role, pin in zip(self.wiring.sensor_roles, self.wiring.sensor_pins, strict=True):
+            yield Wire(("board", self.pins.name(pin)), ("sensor", self._mark(role)), "signal", fixed)
+        if self.wiring.sensor == "AS5048A":
+            for role, pin in self.pins.spi.items():
+                yield Wire(("board", self.pins.name(pin)), ("sensor", self._mark(role)), "signal", fixed)
+
+    def _of_power(self):
+        for output, terminal in zip(OUTPUTS, ("1", "2"), strict=True):
+            yield Wire(("driver", self._mark(output)), ("motor", terminal), "motor")
+        for terminal, pole in zip(SUPPLY, "+-", strict=True):
+            yield Wire(("supply", pole), ("driver", self._mark(terminal)), "motor")
+
+    def _mark(self, terminal):
+        return self.marked.get(terminal, terminal)
+
+    def table(self) -> list[str]:
+        """Return the wires as the lines of a table.
+
+        Examples
+        --------
+        >>> from hapticlab.device.wirings import build
+        >>> print(build("hapkit").table()[3])
+        board D5       driver PWM     already on the board
+        """
+        lines = [f"{'from':<14} {'to':<14} ", f"{'-' * 14} {'-' * 14}"]
+        for wire in self.wires():
+            lines.append(f"{' '.join(wire.begin):<14} {' '.join(wire.end):<14} {_remark(wire)}".rstrip())
+        return [f"board   {self.board}, driver {self.driver}, sensor {self.sensor}", *(line.rstrip() for line in lines)]
+
+    def __str__(self) -> str:
+        return "\n".join([f"{self.name}: {self.title}", *self.table(), *self.notes, f"source: {self.source}"])
+
+
+def _remark(wire):
+    if wire.fixed:
+        return "already on the board"
+    return "through the fuse and the switch" if wire.begin == ("supply", "+") else ""
+
+
+#: the Arduino side of the published Hapkit sketches, and of those of the Longhorn Hapkit
+_SKETCHES = "published Hapkit sketches (hapkit.stanford.edu): PWM on D5, direction on D8, sensor on A2"
+_LONGHORN = "sketches of the Longhorn Hapkit (A. Majewicz Fey, UT Austin, 2021): encoder on D2 and D3, bridge inputs D4 and D5"
+_SHIELD = "Adafruit AFMotor library and motor shield version 1: 74HC595 with latch D12, clock D4, data D8, output enable D7"
+_ENCODER_LEVELS = "A Pico takes at most 3.3 V on its pins: use an encoder that works with 3.3 V, or a level shifter."
+_L298 = "Pull the module's jumper from ENA. Leave its own 5V terminal empty; its jumper 5V-EN stays in, for 7 to 12 V."
+_LOW_CARRIER = "The carrier is audible, because the driver is too slow for a higher one."
+
+BUILDS = {
+    one.name: one
+    for one in (
+        Build(
+            name="hapkit",
+            title="Hapkit 3.0 with its own board",
+            board="uno",
+            wiring=Wiring("MAGNETORESISTIVE", "PWM_DIRECTION", (5, 8), (16,)),
+            driver="on the Hapkit board",
+            sensor="KMA210 on the Hapkit board",
+            source=_SKETCHES,
+            notes=("Only the two wires of the motor and the plug of the supply are connected by hand.",),
+            plugged=("driver", "sensor"),
+        ),
+        Build(
+            name="hapkit_as5048a",
+            title="Hapkit with an AS5048A angle sensor, as in ME327",
+            board="uno",
+            wiring=Wiring("AS5048A", "PWM_DIRECTION", (5, 8), (10,)),
+            driver="on the Hapkit board",
+            sensor="AS5048A module",
+            source="ME327 (Stanford): chip select on D10, SPI; driver as in the " + _SKETCHES,
+            notes=("CLK, MISO and MOSI of the sensor go to the SPI pins of the board, which no other wire may use.",),
+            plugged=("driver",),
+            marked={"SCK": "CLK"},
+        ),
+        Build(
+            name="longhorn_d11",
+            title="Longhorn Hapkit with the enable on D11",
+            board="uno",
+            wiring=Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (4, 5, 11), (2, 3), 31_372),
+            driver="H-bridge with an enable",
+            sensor="encoder on the motor",
+            source=f"{_LONGHORN}, enable D11",
+        ),
+        Build(
+            name="longhorn_d6",
+            title="Longhorn Hapkit with the enable on D6",
+            board="uno",
+            wiring=Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (4, 5, 6), (2, 3), 31_372),
+            driver="H-bridge with an enable",
+            sensor="encoder on the motor",
+            source=f"{_LONGHORN}, enable D6",
+        ),
+        Build(
+            name="motor_shield",
+            title="Uno with a motor shield, Adafruit version 1 or a copy",
+            board="uno",
+            wiring=Wiring("QUADRATURE", "SHIFT_REGISTER", (11, 12, 4, 8), (2, 3), 7_812),
+            driver="L293D on the motor shield",
+            sensor="encoder on the motor",
+            source=f"{_SHIELD}; encoder illustrative",
+            notes=(
+                "The motor is connected to M1. Leave M2 empty, because D3 is also its PWM pin.",
+                "Pull the shield's jumper PWR: the motor has a supply of its own. The shield uses D7, too.",
+                _LOW_CARRIER,
+            ),
+            plugged=("driver",),
+            marked={"OUT1": "M1", "OUT2": "M1", "V+": "EXT_PWR +", "GND": "GND"},
+        ),
+        Build(
+            name="l298",
+            title="Uno or Nano with an L298 module",
+            board="uno",
+            wiring=Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (7, 8, 6), (2, 3), 7_812),
+            driver="L298 module, half A",
+            sensor="encoder on the motor",
+            source="ST L298 data sheet: 25 kHz typical, 40 kHz at most; driver's pins as in a published Nano sketch of a Hapkit; "
+            "encoder illustrative",
+            notes=(_L298, _LOW_CARRIER),
+            marked={"EN": "ENA", "V+": "12V"},
+        ),
+        Build(
+            name="pico_encoder",
+            title="Pico with an encoder and a driver with two inputs",
+            board="pico",
+            wiring=Wiring("QUADRATURE", "TWO_INPUTS", (14, 15), (2, 3), 20_000),
+            driver="DRV8871 or similar",
+            sensor="encoder on the motor",
+            source="illustrative",
+            notes=(_ENCODER_LEVELS,),
+        ),
+        Build(
+            name="pico_l298",
+            title="Pico with an encoder and an L298 module",
+            board="pico",
+            wiring=Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (14, 15, 13), (2, 3), 20_000),
+            driver="L298 module, half A",
+            sensor="encoder on the motor",
+            source="ST L298 data sheet: 25 kHz typical, 40 kHz at most, inputs high from 2.3 V; pins illustrative",
+            notes=(_L298, _ENCODER_LEVELS),
+            marked={"EN": "ENA", "V+": "12V"},
+        ),
+        Build(
+            name="pico_as5048a",
+            title="Pico with an AS5048A and a driver with PWM and direction",
+            board="pico",
+            wiring=Wiring("AS5048A", "PWM_DIRECTION", (14, 15), (17,), 20_000),
+            driver="any with PWM and DIR for 3.3 V",
+            sensor="AS5048A module for 3.3 V",
+            source="AS5048A data sheet (3.3 V operation); pins illustrative",
+            marked={"SCK": "CLK"},
+        ),
+    )
+}
+
+
+def build(name: str) -> Build:
+    """Return a paddle as it is built, by its name; its wiring is ``build(name).wiring``.
+
+    Parameters
+    ----------
+    name : {"hapkit", "hapkit_as5048a", "longhorn_d11", "longhorn_d6", "motor_shield", "l298", "pico_encoder", ...}
+
+    Raises
+    ------
+    PaddleError
+        If there is none of that name.
+
+    Examples
+    --------
+    >>> from hapticlab.device.wirings import build
+    >>> print(build("longhorn_d6").wiring)
+    sensor QUADRATURE (A 2, B 3), drive TWO_INPUTS_ENABLE (IN1 4, IN2 5, EN 6), PWM of 31372 Hz
+    """
+    if name not in BUILDS:
+        raise PaddleError(f"no wiring {name!r}; there are {', '.join(BUILDS)}.")
+    return BUILDS[name]
+
+
+def built_as(board: str, wiring: Wiring) -> Build:
+    """Return the known paddle that has this wiring on this board, or one without a name where there is none."""
+    for one in BUILDS.values():
+        if (one.board, one.wiring) == (board, wiring):
+            return one
+    words = DRIVE_WORDS[wiring.drive], SENSOR_WORDS[wiring.sensor]
+    return Build(name="own", title="a wiring of your own", board=board, wiring=wiring, driver=words[0], sensor=words[1],
+                 source="chosen pin by pin")  # fmt: skip
