@@ -53,8 +53,9 @@ def tool(name):
 
 
 def sources(*folders):
-    """C files of these folders, relative to ``firmware``."""
-    return sorted(path.relative_to(FIRMWARE).as_posix() for folder in folders for path in (FIRMWARE / folder).glob("*.c"))
+    """Source files of these folders, relative to ``firmware``."""
+    found = (path for folder in folders for kind in ("*.c", "*.S") for path in (FIRMWARE / folder).glob(kind))
+    return sorted(path.relative_to(FIRMWARE).as_posix() for path in found)
 
 
 def build(board, folder, core=None):

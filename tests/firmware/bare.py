@@ -22,7 +22,7 @@ HERE = Path(__file__).resolve().parent
 SOURCES = ("core/vm.c", "core/verify.c", "generated/elementary.c")
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections")
 FLAGS += ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
-UNO = build_image.chip_flags("uno")
+UNO = [*build_image.chip_flags("uno"), HERE.parents[1] / "firmware/boards/uno/float.S"]
 OK = 0
 
 

@@ -12,6 +12,7 @@ from build_image import tool
 _HEAD = re.compile(r"^([0-9a-f]{8}) <(.+)>:$")
 _LINE = re.compile(r"^ +([0-9a-f]+):\t[0-9a-f ]+\t(\w+)(?:\t([^;]*))?(?:; (.*))?$")
 _TARGET = re.compile(r"0x([0-9a-f]+)")
+_LEAVING = ("ret", "reti", "jmp", "rjmp", "ijmp")
 RETURN = 2  # bytes of a return address
 
 
@@ -21,12 +22,17 @@ class StackBound:
     def __init__(self, elf):
         text = subprocess.run([tool("avr-objdump"), "-d", elf], check=True, capture_output=True, text=True).stdout
         self._known, self.names, self.own, self._calls, self._framing, name = {}, {}, {}, {}, None, None
+        last = None
         for line in text.splitlines():
             if head := _HEAD.match(line):
+                address = int(head[1], 16)
+                if last not in _LEAVING and name:
+                    self._calls[name].add((address, 0))  # goes on into the next
                 name = head[2]
-                self.names[int(head[1], 16)] = name
+                self.names[address] = name
                 self.own[name], self._calls[name] = 0, set()
             elif name and (part := _LINE.match(line)):
+                last = part[2]
                 self._read(name, part[2], (part[3] or "").replace(" ", "").strip(), part[4] or "")
 
     def _read(self, name, operation, operands, comment):

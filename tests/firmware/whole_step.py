@@ -95,7 +95,7 @@ def answer_cycles(elf, snapshots, request):
     """Return the most cycles that hl_core_poll takes to answer a request."""
     cpu, found = Avr(elf), []
     core, ring = cpu.place("uno_core"), cpu.place("tx")
-    for memory in snapshots:
+    for memory in snapshots[4:-4]:  # those of the program running
         cpu.write(RAM_BEGIN, memory)
         for byte in request:
             cpu.call("hl_core_byte", core, byte)
