@@ -71,7 +71,7 @@ class Board:
     arena : int
         Memory of one program, its bytes and its registers [bytes].
     channels : int
-        Numbers in a sample: x, v, F and what is watched.
+        Numbers in a sample: x, v, F and what is watched; a frame of the link carries at most 10.
     T_max : float
         Longest period [s].
     usb : tuple of Usb
@@ -123,8 +123,8 @@ UNO = Board(
     ),
     pins=UNO_PINS,
 )
-CORTEX_M0 = Board(name="cortex-m0+", hz=125e6, word_bits=8, arena=16_384, channels=16)
-CORTEX_M4 = Board(name="cortex-m4f", hz=168e6, word_bits=8, arena=16_384, channels=16)
+CORTEX_M0 = Board(name="cortex-m0+", hz=125e6, word_bits=8, arena=16_384, channels=10)
+CORTEX_M4 = Board(name="cortex-m4f", hz=168e6, word_bits=8, arena=16_384, channels=10)
 HOST = Board(name="host", hz=None, word_bits=16, arena=32_768, channels=10, T_max=30e-3)
 
 BOARDS = {board.name: board for board in (UNO, CORTEX_M0, CORTEX_M4, HOST)}

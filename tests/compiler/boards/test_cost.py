@@ -15,6 +15,7 @@ from hapticlab.compiler.boards.board_fit import PERIODS, fit, table
 from hapticlab.compiler.boards.cost import BOARDS, SEARCH_MARGIN, Cost, cost, tables
 from hapticlab.compiler.engines.bytecode import OPCODES, encode, layout
 from hapticlab.compiler.ir.program import LEAVES, Block, Channel, Instruction, Program
+from hapticlab.device.link.messages import LARGEST_PAYLOAD
 from hapticlab.errors import ProgramError, ProgramLimitError
 
 FIRMWARE = Path(__file__).resolve().parents[3] / "firmware"
@@ -94,14 +95,32 @@ def test_memory_is_the_bytes_as_sent_and_four_a_register(seed):
     assert said.bytes == len(data)
 
 
+def differences(constants, board):
+    """What a board's record says otherwise than its firmware's constants, and what no firmware can have."""
+    constant = dict(re.findall(r"#define HL_(\w+) \"?([\w+-]+)", constants))
+    own = {"BOARD_NAME": board.name, "ARENA_BYTES": board.arena, "CHANNELS": board.channels}
+    own |= {"PERIOD_MAX_US": round(board.T_max * 1e6)}
+    own |= {"WORD_BITS": board.word_bits} if "WORD_BITS" in constant else {}  # the host's is of its build
+    return [name for name, value in own.items() if constant[name] != str(value)] + ["payload"] * (not has_room(board))
+
+
+def has_room(board):
+    """Whether a frame carries a sample of so many numbers: tick, flags and 4 bytes a number; core.h refuses what is larger."""
+    return 5 + 4 * board.channels <= LARGEST_PAYLOAD
+
+
 @pytest.mark.parametrize("constants", sorted(FIRMWARE.glob("boards/*/board_constants.h")), ids=lambda path: path.parent.name)
 def test_a_record_is_as_the_firmware_of_its_board(constants):
     text, board = constants.read_text(), BOARDS[constants.parent.name]
-    constant = {name: int(value) for name, value in re.findall(r"#define HL_(\w+) (\d+)", text)}
-    word_bits = constant.get("WORD_BITS", board.word_bits)  # the host's is of its build
-    assert (board.arena, board.word_bits, board.channels) == (constant["ARENA_BYTES"], word_bits, constant["CHANNELS"])
-    assert board.T_max == constant["PERIOD_MAX_US"] * 1e-6
-    assert re.search(r'#define HL_BOARD_NAME "(.*)"', text)[1] == board.name
+    assert differences(text, board) == []
+    for name, wrong in (("arena", 1 << 20), ("channels", 7), ("T_max", 0.02), ("name", "nano"), ("word_bits", 4)):
+        noticed = name != "word_bits" or "HL_WORD_BITS" in text
+        assert bool(differences(text, replace(board, **{name: wrong}))) == noticed, name
+
+
+def test_no_board_promises_more_channels_than_a_frame_carries():
+    assert [name for name, board in BOARDS.items() if not has_room(board)] == []
+    assert not has_room(replace(BOARDS["uno"], channels=11))
 
 
 def test_what_can_be_flashed_has_firmware():
