@@ -114,7 +114,7 @@ def test_a_record_is_as_the_firmware_of_its_board(constants):
     text, board = constants.read_text(), BOARDS[constants.parent.name]
     assert differences(text, board) == []
     for name, wrong in (("arena", 1 << 20), ("channels", 7), ("T_max", 0.02), ("name", "nano"), ("word_bits", 4)):
-        noticed = name != "word_bits" or "HL_WORD_BITS" in text
+        noticed = name != "word_bits" or "#define HL_WORD_BITS" in text
         assert bool(differences(text, replace(board, **{name: wrong}))) == noticed, name
 
 
