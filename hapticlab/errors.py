@@ -121,8 +121,8 @@ class PaddleError(HapticlabError, ValueError):
 class PortError(PaddleError):
     """A serial port is missing, in use, forbidden, or disconnected during use.
 
-    ``cause`` is one word for it: "missing", "busy", "permission", "url", "refused", "settings", "left", "silent" or
-    "failed".
+    ``cause`` is one word for it: "missing", "busy", "permission", "url", "refused", "settings", "left", "slept", "silent"
+    or "failed".
     """
 
     def __init__(self, message: str, cause: str = "failed") -> None:

@@ -48,7 +48,7 @@ def cleared(exchange, url):
     if state["state"] != STATES["FAULT"]:
         return []
     exchange.command("CLEAR")
-    return [f"{url}: a fault was pending: {fault_words(state)}"]
+    return [f"{url}: a fault was pending: {fault_words(state | {'absent': exchange.absent()})}"]
 
 
 def introduction(board, settings, T):
@@ -60,6 +60,11 @@ def introduction(board, settings, T):
     calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day[:4]}-{day[4:6]}-{day[6:]}"
     parts += [calibrated, f"|F| <= {min(settings.force_max, settings.force_full):.4g} N"]
     return ", ".join(parts if settings.checked else [*parts, "motor sign not checked, so at most 0.5 N"])
+
+
+def silent_fault(state, exchange):
+    """Return the fault that a STATE tells, as a FAULTED frame would have."""
+    return {"fault": state["fault"], "tick": state["tick"], "value": math.nan, "absent": exchange.absent()}
 
 
 def explain_silence(exchange, url):
@@ -76,6 +81,6 @@ def explain_silence(exchange, url):
             "when the motor drew current, or its reset button was pressed. Check the supply, then connect again."
         )
     if state["state"] == STATES["FAULT"]:  # and the report of it was lost on its way
-        return {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
+        return silent_fault(state, exchange)
     what = "runs but sends no samples" if state["state"] == STATES["RUN"] else "was stopped by another program"
     raise LinkError(f"{url}: the board {what}; connect again")

@@ -14,6 +14,7 @@ from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
 from ...errors import PaddleError
 from ..link.messages import FAULTS, SAMPLE_FLAGS, row_of
+from ..link.port_faults import absence_words
 from ..live_parameters import named_values
 from .upload import upload
 
@@ -53,9 +54,12 @@ class Run:
         What runs; the samples carry the outputs of its program.
     every : int
         Ticks from one sample to the next.
+    absent : callable
+        Gives for how long this program did not run [s]; asked when the board reports a fault.
     """
 
-    def __init__(self, loaded, every):
+    def __init__(self, loaded, every, absent=lambda: 0.0):
+        self._absent = absent
         self.loaded, self.program, self.every = loaded, loaded.program, every
         self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
         self._rows, self._taken = deque(), -every
@@ -69,7 +73,7 @@ class Run:
     def add(self, frame):
         """Take a SAMPLE or FAULTED frame."""
         if frame.message == "FAULTED":
-            self.fault = frame.fields
+            self.fault = frame.fields | {"absent": self._absent()}
         elif len(frame.payload) == self._row.itemsize:
             tick, flags = struct.unpack_from("<IB", frame.payload)
             self.begun = self.begun or bool(flags & SAMPLE_FLAGS["FIRST"])
@@ -144,6 +148,8 @@ def fault_words(fault, T=None):
         return None
     name, cause, cure = row_of(FAULTS, fault["fault"]) or ("UNKNOWN", "", "")
     when = f"tick {fault['tick']}" + (f" (t = {fault['tick'] * T:g} s)" if T else "")
+    if name == "HOST_SILENT" and fault.get("absent"):
+        cure = f"{absence_words(fault['absent'])}; start the scene again"
     return f"{when}: {name}: {cause}; the motor is off from then on. {cure[:1].upper()}{cure[1:]}."
 
 

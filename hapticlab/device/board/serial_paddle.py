@@ -21,7 +21,7 @@ from ..link.serial_ports import open_port
 from ..live_parameters import check_margin, checked, in_portions, named_values, send
 from ..paddle import Paddle
 from ..progress import progress_bar
-from .greeting import cleared, explain_silence, introduction, say_hello, what_happened
+from .greeting import cleared, explain_silence, introduction, say_hello, silent_fault, what_happened
 from .homing import home
 from .run import Loaded, Run, Timing, decimation, fault_words, load
 from .upload import STORE_PATIENCE, check_period, check_room, read_settings, upload
@@ -246,7 +246,7 @@ class SerialPaddle(Paddle):
             self.exchange.command("STOP")
             state = self.exchange.refresh()
             if state["state"] == STATES["FAULT"]:
-                run.fault = run.fault or {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
+                run.fault = run.fault or silent_fault(state, self.exchange)
                 self.exchange.command("CLEAR")
             self._listen(None)
             self.timing = Timing(state, self.board["clock_hz"], self.T)
@@ -402,7 +402,7 @@ class SerialPaddle(Paddle):
                 self._loaded = load(self.exchange, program, self.board["word_bytes"])
                 for some in in_portions(named_values(program)):
                     send(self.exchange, program, some)
-            run = Run(self._loaded, decimation(self._loaded.program, self.exchange.port, every))
+            run = Run(self._loaded, decimation(self._loaded.program, self.exchange.port, every), self.exchange.absent)
             self._listen(run)
             self.exchange.beating = True
             self.exchange.command("START", self._loaded.crc, run.every, options, force_max, then=run.begin)

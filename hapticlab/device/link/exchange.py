@@ -10,8 +10,10 @@ import threading
 import time
 from contextlib import contextmanager, suppress
 
-from ...errors import LinkError, PaddleError
+from ...errors import LinkError, PaddleError, PortError
 from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS, row_of
+from .port_faults import slept
+from .presence import Presence
 from .serial_ports import port_watched, read_available
 from .wire import Decoder, encode
 
@@ -38,6 +40,8 @@ class Exchange:
         Fields of the last STATE.
     broken : PortError or None
         Why the reader stopped.
+    presence : Presence
+        Whether this program ran all the time since the last START; where time is virtual it always did.
     """
 
     def __init__(self, port, on_frame=lambda frame: None):
@@ -55,6 +59,7 @@ class Exchange:
         self._turn, self._news, self.closed = threading.Lock(), threading.Condition(), False
         self._waiting = None  # the thread for which virtual time passes
         self._last_sent = self.now()
+        self.presence = Presence(self.now) if self.lockstep else Presence()
         self._thread = None
         if not self.lockstep:
             self._thread = threading.Thread(target=self._read_for_ever, name=f"hapticlab {port.port}", daemon=True)
@@ -94,6 +99,8 @@ class Exchange:
 
     def command(self, message, *values, rest=b"", **options):
         """Ask for something to be done; return the tick after which it was, or raise LinkError with the board's reason."""
+        if message == "START":
+            self.presence.forget()
         reply = self.ask(message, *values, rest=rest, **options)
         said = reply.fields
         if said["result"]:
@@ -164,8 +171,22 @@ class Exchange:
     def _send(self, frame):
         self.check()
         self._last_sent = self.now()
-        with port_watched(self.port):
-            self.port.write(frame)
+        try:
+            with port_watched(self.port):
+                self.port.write(frame)
+        except PortError as problem:
+            # where the time ran out while this program was stopped, the port is not blocked: the frame counts as lost
+            if problem.cause != "silent" or not self.absent():
+                raise self._explained(problem) from problem.__cause__
+
+    def absent(self):
+        """Return for how long this program did not run since the last START [s]; 0 where time is virtual."""
+        return 0.0 if self.lockstep else self.presence.absent()
+
+    def _explained(self, problem):
+        """What broke the exchange; of a port that went while the computer slept, in these words."""
+        gone = isinstance(problem, PortError) and problem.cause == "left" and not self.closed
+        return slept(self.port.port, self.absent()) if gone and self.absent() else problem
 
     def check(self):
         """Raise what broke the exchange, if anything did."""
@@ -225,6 +246,7 @@ class Exchange:
         while not self.closed:
             try:
                 data = read_available(self.port)
+                self.presence.note()
                 self._beat()
                 if data:
                     with self._news:
@@ -232,7 +254,8 @@ class Exchange:
                         self._news.notify_all()
             except Exception as problem:  # whatever it was, those who wait must hear of it
                 if not self.closed:
-                    self.broken = problem
+                    self.broken = self._explained(problem)
+                self.presence.end()
                 with self._news:
                     self._news.notify_all()
                 return

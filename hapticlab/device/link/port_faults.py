@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 
 from ...compiler.engines.firmware_library import firmware_folder
+from ...errors import PortError
+from .messages import HOST_SILENCE_MS
 
 #: of udev, in firmware/udev
 RULES = "60-hapticlab.rules"
@@ -31,6 +33,20 @@ def explain(url, baudrate, problem, ports):
     if isinstance(problem, ValueError) or "baud" in text:
         return f"{url} cannot be set to {baudrate} baud ({text}); use a port or a USB adapter that can", "settings"
     return f"{url} did not open ({text}); plug in the board again, then connect again", "failed"
+
+
+def absence_words(seconds):
+    """The sentence that says why a board did not hear this program for a while."""
+    return f"The computer slept, or this program was stopped or too busy, for {seconds:.2g} s"
+
+
+def slept(url, seconds):
+    """Return the PortError of a port that went while this program did not run."""
+    return PortError(
+        f"{url}: HOST_SILENT: {absence_words(seconds).lower()}, and its port is gone. The board switched its motor off after "
+        f"{HOST_SILENCE_MS} ms without the computer. Connect again; if there is no answer, plug the board in again",
+        "slept",
+    )
 
 
 def _explain_url(url, problem):
