@@ -12,6 +12,7 @@
 #define HL_DUTY_FULL 4096
 #define HL_PERIOD_MIN_US 100
 #define HL_PERIOD_MAX_US 10000 /* the clock turns every 65536 us */
+#define HL_READING_BITS 32
 #define HL_STORE_BYTES 4080 /* a sector of flash less its header */
 
 #endif

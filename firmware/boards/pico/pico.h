@@ -53,9 +53,9 @@ void chip_begin(void);
 /* sensor.c: start a conversion; board_reading takes its result */
 void sensor_sample(void);
 
-/* quadrature.c: an encoder on a pin and the next; the low 16 bits of its count, whether an edge was missed since asked */
+/* quadrature.c: an encoder on a pin and the next; its count, whether an edge was missed since asked */
 void quadrature_begin(uint8_t first_pin);
-uint16_t quadrature_count(void);
+uint32_t quadrature_count(void);
 uint8_t quadrature_lost(void);
 
 /* motor.c: whether settings name a drive that this board has; its pins, a bit each; take them into use, or let go */

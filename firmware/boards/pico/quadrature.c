@@ -64,7 +64,7 @@ void quadrature_begin(uint8_t first_pin)
 }
 
 /* The FIFO is full of old counts: the one after them is of now. */
-uint16_t quadrature_count(void)
+uint32_t quadrature_count(void)
 {
     uint32_t old = REGISTER(PIO_FLEVEL) >> 4 & 15, count;
     do {
@@ -72,7 +72,7 @@ uint16_t quadrature_count(void)
         }
         count = REGISTER(PIO_RX0);
     } while (old-- > 0);
-    return (uint16_t)count;
+    return count;
 }
 
 uint8_t quadrature_lost(void)

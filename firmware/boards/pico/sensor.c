@@ -12,10 +12,10 @@ enum { MISO = 16, CLOCK = 18, MOSI = 19 };
 enum { READ_ANGLE = 0xffff, CLEAR_ERROR = 0x4001, ERROR = 1 << 14, ANGLE = 0x3fff };
 enum { SPI_16_BITS = 15, SPI_SECOND_EDGE = 1 << 7, SPI_ON = 2, SPI_BUSY = 1 << 4, SPI_PRESCALE = 14 }; /* 8.9 MHz */
 enum { NO_SENSOR = 255 }; /* until there are settings */
-enum { SELECT_CYCLES = 16 }; /* of about 3 clocks: 350 ns from select to clock and between frames */
+enum { PAUSE = 5 }; /* turns of about 10 clocks: 350 ns from select to clock, and between frames */
 
 static uint8_t sensor = NO_SENSOR, select_pin;
-static uint16_t last;
+static hl_reading last;
 
 static uint8_t sensor_can(const hl_settings *settings)
 {
@@ -43,7 +43,7 @@ static uint32_t sensor_pins(const hl_settings *settings)
 
 static void pause(void)
 {
-    for (volatile uint8_t k = 0; k < SELECT_CYCLES / 4; k++) {
+    for (volatile uint8_t k = 0; k < PAUSE; k++) {
     }
 }
 
@@ -83,7 +83,7 @@ static uint8_t odd(uint16_t bits)
     return (0x6996 >> (folded & 15)) & 1; /* the parity of every 4 bits */
 }
 
-static uint16_t as5048a(hl_core *core)
+static hl_reading as5048a(hl_core *core)
 {
     spi(READ_ANGLE);
     const uint16_t answer = spi(READ_ANGLE);
@@ -95,7 +95,7 @@ static uint16_t as5048a(hl_core *core)
     return answer & ANGLE;
 }
 
-static uint16_t analog(hl_core *core)
+static hl_reading analog(hl_core *core)
 {
     while (!(REGISTER(ADC_CS) & ADC_READY)) {
     }
@@ -109,9 +109,9 @@ static uint16_t analog(hl_core *core)
     return reading;
 }
 
-static uint16_t quadrature(hl_core *core)
+static hl_reading quadrature(hl_core *core)
 {
-    const uint16_t count = quadrature_count();
+    const uint32_t count = quadrature_count();
     if (quadrature_lost()) {
         hl_core_fault(core, HL_FAULT_SENSOR, (float)count);
     }
@@ -125,7 +125,7 @@ void sensor_sample(void)
     }
 }
 
-uint16_t board_reading(hl_core *core)
+hl_reading board_reading(hl_core *core)
 {
     switch (sensor) {
     case HL_SENSOR_MAGNETORESISTIVE:
