@@ -19,8 +19,11 @@ FLAGS = (
     "-fno-inline-functions-called-once -ffunction-sections -fdata-sections "
     "-Wall -Wextra -Wpedantic -Wconversion"
 ).split()
-#: files of which no tick runs anything but a multiplication: they are made small, all others fast
-COLD = {"core/handle.c", "core/place.c", "core/store.c"}
+#: what the tick runs is made fast; a file of which it runs a few products is made small, one of which it runs nothing smaller
+FAST, SMALL, SMALLEST = ("-O2",), ("-Os",), ("-Os", "-mcall-prologues")
+SIZES = {"core/handle.c": SMALL, "boards/uno/wiring.c": SMALLEST}
+SIZES |= {f"core/{name}.c": SMALLEST for name in ("message", "place", "store", "verify")}
+LINKING = ("-mrelax", "-Wl,--gc-sections")  # short calls where they reach
 BUILT = {name: board for name, board in BOARDS.items() if board.flashing}
 
 
@@ -70,9 +73,9 @@ def build(board, folder, core=None):
     with tempfile.TemporaryDirectory() as temporary:
         objects = [Path(temporary) / f"{k}.o" for k in range(len(files))]
         for file, target in zip(files, objects, strict=True):
-            size = "-Os" if file in COLD else "-O2"
-            subprocess.run([*compiler, *FLAGS, size, *include, "-c", file, "-o", target], cwd=FIRMWARE, check=True)
-        subprocess.run([*compiler, "-Wl,--gc-sections", *objects, "-lm", "-o", elf], check=True)
+            flags = [*FLAGS, *SIZES.get(file, FAST)]
+            subprocess.run([*compiler, *flags, *include, "-c", file, "-o", target], cwd=FIRMWARE, check=True)
+        subprocess.run([*compiler, *LINKING, *objects, "-lm", "-o", elf], check=True)
     subprocess.run([tool("avr-objcopy"), "-O", "ihex", elf, image], check=True)
     image.write_bytes(image.read_bytes().replace(b"\r\n", b"\n"))  # the same bytes on every computer
     return elf, image

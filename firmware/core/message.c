@@ -1,5 +1,6 @@
 /* What each request does. */
 #include "crc.h"
+#include "flash.h"
 #include "parts.h"
 #include "wire.h"
 
@@ -7,6 +8,8 @@
 #include <string.h>
 
 enum { CRC_BYTES = 4 }; /* at the end of programs and settings */
+
+static const uint8_t board_name[] HL_FLASH = HL_BOARD_NAME;
 
 #define FIRMWARE_MAJOR 1
 #define FIRMWARE_MINOR 0
@@ -30,7 +33,7 @@ static uint8_t welcome(hl_core *core, const uint8_t *payload, uint8_t *to)
         begin_session(core, hl_get32(payload));
     }
     memset(to, 0, HL_AT_WELCOME_RESET_CAUSE + 1);
-    memcpy(to + HL_AT_WELCOME_BOARD, HL_BOARD_NAME, sizeof HL_BOARD_NAME - 1);
+    hl_flash_copy(to + HL_AT_WELCOME_BOARD, board_name, sizeof board_name - 1);
     hl_put32(to + HL_AT_WELCOME_TABLE, HL_PROTOCOL_HASH);
     if (core->calibrated) {
         board_store_read(core, (uint16_t)offsetof(hl_record, ident), to + HL_AT_WELCOME_IDENT, 2);
@@ -340,7 +343,7 @@ static uint8_t acknowledge(hl_core *core, uint8_t message, uint8_t result, uint8
     return HL_AT_ACK_TICK + 4;
 }
 
-static const uint8_t rules[][4] = {
+static const uint8_t rules[][4] HL_FLASH = {
 #define RULE(name, number, bytes, guarded, open) {number, bytes, guarded, open},
     HL_MESSAGES(RULE)
 #undef RULE
@@ -351,10 +354,11 @@ static uint8_t check(const hl_core *core, const uint8_t *frame, uint8_t *count)
 {
     const uint8_t message = frame[0] & 31;
     for (uint8_t k = 0; k < sizeof rules / sizeof rules[0]; k++) {
-        const uint8_t *rule = rules[k];
-        if (rule[0] != message || message >= HL_MESSAGE_ACK) {
+        uint8_t rule[4];
+        if (HL_FLASH_BYTE(rules[k]) != message || message >= HL_MESSAGE_ACK) {
             continue;
         }
+        hl_flash_copy(rule, rules[k], sizeof rule);
         const uint8_t guard = rule[2] ? 4 : 0;
         if (*count < rule[1] + guard || (!rule[3] && *count > rule[1] + guard)) {
             return HL_RESULT_LENGTH;

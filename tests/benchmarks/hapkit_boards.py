@@ -80,7 +80,7 @@ class Sketch:
 def sketch(every=0, millis=1, hand=None):
     """Run the sketch from its reset on; timer 0 must run in the emulator, for its interrupt."""
     image, elf = sketch_image(every, millis)
-    with Uno(image, carrier=True) as board:
+    with Uno(image, carrier=5) as board:
         handle = PaddleHandle(hl.SimulatedPaddle.from_profile("hapkit", hand=hand))
         loop = ClosedLoop(board, handle, MagnetoresistiveSensor(METRES), force_full=FULL, law=SQRT)
         yield Sketch(loop, symbols(elf))

@@ -1,10 +1,13 @@
 """The emulated Uno closed around a handle: motor duty to force, handle position to the sensor's pins, 20 kHz."""
 
 import math
+from collections import deque
 from dataclasses import replace
 
+import numpy as np
 from emulator import CYCLES_PER_SECOND, Uno
 
+from hapticlab.device.board.settings import pins_of
 from hapticlab.device.link.messages import MOTOR_LAWS, SENSORS
 from hapticlab.device.simulated.moved_handle import Handle
 
@@ -13,14 +16,36 @@ LINEAR, SQRT = 0, 1
 
 
 class MagnetoresistiveSensor:
-    """A KMA210 on A2: counts grow by ``wrap`` over half a turn of the magnet, then begin again at ``low``."""
+    """A KMA210 on A2: counts grow by ``wrap`` over half a turn of the magnet, then fly back to ``low`` in ``flight`` [s]."""
 
-    def __init__(self, metres_per_count, wrap=920, low=52, offset=300):
+    def __init__(self, metres_per_count, wrap=920, low=52, offset=300, flight=0.0, channel=2):
         self.metres_per_count, self.wrap, self.low, self.offset = metres_per_count, wrap, low, offset
+        self.flight, self.channel, self.flights, self._angle = flight, channel, 0, None
 
     def show(self, board, x):
-        """Put the pin where a handle at ``x`` [m] puts it."""
-        board.adc(math.floor((x / self.metres_per_count + self.offset) % self.wrap) + self.low)
+        """Put the pin where a handle at ``x`` [m] puts it, a step after it was there."""
+        before, angle = self._angle, x / self.metres_per_count + self.offset
+        self._angle = angle
+        turns, place = divmod(angle, self.wrap)
+        counts = math.floor(place) + self.low
+        if self.flight and before is not None and before // self.wrap != turns:
+            end = max(turns, before // self.wrap) * self.wrap  # between two turns
+            board.fly(counts, self.flight, STEP * (end - before) / (angle - before), self.channel)
+            self.flights += 1
+        else:
+            board.adc(counts, self.channel)
+
+
+class AngleSensor:
+    """An AS5048A: ``wrap`` counts in a turn of the magnet, read over the SPI with a chip select on ``select``."""
+
+    def __init__(self, metres_per_count, wrap=16384, offset=5000, select=10):
+        self.metres_per_count, self.wrap, self.offset, self.select = metres_per_count, wrap, offset, select
+
+    def show(self, board, x):
+        """Turn the magnet to where a handle at ``x`` [m] has it."""
+        board.sensor.select = self.select
+        board.sensor.angle = math.floor(x / self.metres_per_count + self.offset) % self.wrap
 
 
 class QuadratureSensor:
@@ -66,22 +91,34 @@ class ClosedLoop:
     board : Uno
     handle : object
         ``step(force_N, seconds)`` moves it and returns its position [m].
-    sensor : MagnetoresistiveSensor or QuadratureSensor
+    sensor : MagnetoresistiveSensor, AngleSensor or QuadratureSensor
     force_full : float
         Force at the handle at full duty [N].
     law : LINEAR or SQRT
         Duty grows with the force, or with its square root.
     motor_sign : int
         -1 where the motor's wires are swapped.
+    dead : float
+        Part of full duty below which the motor gives no force.
+    delay : float
+        Age of what the sensor shows [s].
+    noise : float
+        Standard deviation of the position that the sensor shows [m].
     """
 
-    def __init__(self, board: Uno, handle, sensor, *, force_full, law=LINEAR, motor_sign=1):
+    def __init__(self, board: Uno, handle, sensor, *, force_full, law=LINEAR, motor_sign=1, dead=0.0, delay=0.0, noise=0.0):
         self.board, self.handle, self.sensor = board, handle, sensor
-        self.force_full, self.law, self.motor_sign = force_full, law, motor_sign
+        self.force_full, self.law, self.motor_sign, self.dead, self.noise = force_full, law, motor_sign, dead, noise
+        self._past, self._random = deque(maxlen=1 + round(delay / STEP)), np.random.default_rng(7)
         self._step = round(STEP * CYCLES_PER_SECOND)
         self._next = board.cycle
         self.x = handle.step(0.0, 0.0)
-        sensor.show(board, self.x)
+        self._show()
+
+    def _show(self):
+        """Let the sensor show where the handle was."""
+        self._past.append(self.x)
+        self.sensor.show(self.board, self._past[0] + (self.noise * self._random.standard_normal() if self.noise else 0.0))
 
     @property
     def now(self):
@@ -90,18 +127,27 @@ class ClosedLoop:
 
     def force(self):
         """The motor's force at the handle now [N], along growing x."""
-        part = self.board.duty / 256
-        return self.motor_sign * self.force_full * (part * abs(part) if self.law == SQRT else part)
+        duty = self.board.duty / 256
+        part = max(0.0, (abs(duty) - self.dead) / (1 - self.dead))
+        force = self.force_full * (part * part if self.law == SQRT else part)
+        return self.motor_sign * math.copysign(force, duty)
 
     @classmethod
     def of(cls, settings, board, handle):
         """Close a board around a handle as its Settings say that both are."""
+        step, pin = settings.metres_per_count, pins_of(settings.sensor_pins)[0]
         if settings.sensor == SENSORS["MAGNETORESISTIVE"]:
-            sensor = MagnetoresistiveSensor(settings.metres_per_count, settings.wrap)
+            sensor = MagnetoresistiveSensor(step, settings.wrap, flight=settings.sensor_flight, channel=pin - 14)
+        elif settings.sensor == SENSORS["AS5048A"]:
+            sensor = AngleSensor(step, settings.wrap, select=pin)
         else:
-            sensor = QuadratureSensor(settings.metres_per_count)
+            sensor = QuadratureSensor(step)
+        board.wire(settings.drive, pins_of(settings.motor_pins))
         law = SQRT if settings.motor_law == MOTOR_LAWS["SQRT"] else LINEAR
-        return cls(board, handle, sensor, force_full=settings.force_full, law=law, motor_sign=settings.motor_sign)
+        return cls(
+            board, handle, sensor, force_full=settings.force_full, law=law, motor_sign=settings.motor_sign,
+            dead=settings.duty_dead, delay=settings.sensor_delay, noise=settings.sensor_noise,
+        )  # fmt: skip
 
     def run_until(self, condition, seconds):
         """Go on until ``condition()`` holds, looked at every 50 us, or the time is over."""
@@ -113,7 +159,7 @@ class ClosedLoop:
                 self._next -= self._step
                 return
             self.x = self.handle.step(self.force(), STEP)
-            self.sensor.show(self.board, self.x)
+            self._show()
 
     def run(self, seconds):
         """Go on for so long."""

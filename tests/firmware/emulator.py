@@ -33,16 +33,39 @@ def missing():
     return None
 
 
+class Driver(ctypes.Structure):
+    """The motor's driver, as simavr_paddle.h has it."""
+
+    _fields_ = (
+        ("drive", ctypes.c_int), ("pins", 4 * ctypes.c_uint8), ("conflicts", ctypes.c_uint64),
+        ("shifting", ctypes.c_uint8), ("held", ctypes.c_uint8), ("was", ctypes.c_uint8),
+    )  # fmt: skip
+
+
+class As5048a(ctypes.Structure):
+    """An angle sensor on the SPI, as simavr_paddle.h has it."""
+
+    _fields_ = (
+        ("select", ctypes.c_uint8), ("angle", ctypes.c_uint16), ("zeros", ctypes.c_uint16), ("ones", ctypes.c_uint16),
+        ("flips", ctypes.c_uint16), ("diagnostics", ctypes.c_uint16), ("answer", ctypes.c_uint16), ("out", ctypes.c_uint16),
+        ("in_", ctypes.c_uint16), ("errors", ctypes.c_uint16), ("bits", ctypes.c_uint8), ("selected", ctypes.c_uint8),
+        ("since", ctypes.c_uint64), ("hasty", ctypes.c_uint64), ("latched", ctypes.c_uint64),
+    )  # fmt: skip
+
+
 @cache
 def library():
     """The compiled shim."""
     folder = tempfile.mkdtemp(prefix="simavr")
     target = Path(folder) / "shim.so"
-    source = Path(__file__).with_name("simavr_shim.c")
-    subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-I/usr/include/simavr", "-o", target, source, "-lsimavr"], check=True)
+    sources = [Path(__file__).with_name(name) for name in ("simavr_shim.c", "simavr_paddle.c")]
+    subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-I/usr/include/simavr", "-o", target, *sources, "-lsimavr"], check=True)
     shim = ctypes.CDLL(str(target))
     shutil.rmtree(folder)
     shim.uno_adc.argtypes = (ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16)
+    shim.uno_fly.argtypes = (ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16, ctypes.c_uint64, ctypes.c_uint64)
+    shim.uno_carrier.restype = ctypes.c_double
+    shim.uno_driver.restype, shim.uno_sensor.restype = ctypes.POINTER(Driver), ctypes.POINTER(As5048a)
     shim.uno_run.argtypes = (ctypes.c_void_p, ctypes.c_uint64)
     shim.uno_new.restype = ctypes.c_void_p
     shim.uno_memory.restype = ctypes.POINTER(ctypes.c_uint8)
@@ -63,8 +86,8 @@ class Uno:
         What it holds from its address 0 on; 0xff elsewhere.
     cause : int
         MCUSR as the reset leaves it.
-    carrier : bool
-        Give D5 the edges of its PWM: slower.
+    carrier : int
+        Give this pin, of D3, D5 and D6, the edges of its PWM: slower. 0: none.
 
     Attributes
     ----------
@@ -74,7 +97,7 @@ class Uno:
         Registers and RAM, live; what is written here goes past the hooks of registers.
     """
 
-    def __init__(self, image, *, eeprom=b"", cause=POWER, carrier=False):
+    def __init__(self, image, *, eeprom=b"", cause=POWER, carrier=0):
         self._shim = library()
         flash = parse_hex(Path(image).read_text(), str(image))
         self._uno = ctypes.c_void_p(self._shim.uno_new(flash, ctypes.c_uint32(len(flash)), int(carrier)))
@@ -122,13 +145,40 @@ class Uno:
         """Put a pin of the ADC at so many counts."""
         self._shim.uno_adc(self._uno, channel, int(counts))
 
+    def fly(self, counts, seconds, after=0.0, channel=2):
+        """Let a pin of the ADC fly to so many counts in some time, and begin after some time."""
+        begin = self.cycle + round(after * CYCLES_PER_SECOND)
+        self._shim.uno_fly(self._uno, channel, int(counts), begin, begin + round(seconds * CYCLES_PER_SECOND))
+
+    def wire(self, drive, pins):
+        """Connect the motor's driver, by the numbers of DRIVES and the pins of Settings."""
+        self._shim.uno_drive(self._uno, drive, bytes(pins).ljust(4, b"\xff"))
+
+    @property
+    def driver(self):
+        """The motor's Driver, live."""
+        return self._shim.uno_driver(self._uno).contents
+
+    @property
+    def sensor(self):
+        """The As5048a, live; it is connected where its ``select`` is a pin."""
+        return self._shim.uno_sensor(self._uno).contents
+
+    def high(self, pin):
+        """How much of the time a pin is high, in 256ths; -1 where it is an input."""
+        return self._shim.uno_high(self._uno, pin)
+
+    def carrier(self, pin):
+        """Frequency of the PWM on a pin [Hz], 0 where there is none."""
+        return self._shim.uno_carrier(self._uno, pin)
+
     def pin(self, pin, level):
         """Drive D0 to D7."""
         self._shim.uno_pin(self._uno, pin, int(level))
 
     @property
     def duty(self):
-        """Duty of the motor from its pins, -256 to 256, positive with D8 high."""
+        """Duty of the motor from the pins of its driver, -256 to 256; on a Hapkit's, positive with D8 high."""
         return self._shim.uno_duty(self._uno)
 
     def duties(self):
@@ -136,7 +186,7 @@ class Uno:
         return self._events(0)
 
     def edges(self):
-        """Every change of D5, the latest 16384: cycles and levels. Of the PWM only with ``carrier``."""
+        """Every change of ``carrier``'s pin, else D5, the latest 16384: cycles and levels. Of the PWM only with ``carrier``."""
         return self._events(1)
 
     def samples(self):
@@ -145,7 +195,7 @@ class Uno:
         return begun + 3 * prescaler // 2
 
     def updates(self):
-        """Cycles of every write of the PWM's control, the latest 16384, whether the duty changed or not."""
+        """Cycles at which the motor's registers were written, the latest 16384, whether the duty changed or not."""
         return self._events(3)[0]
 
     def _events(self, which):

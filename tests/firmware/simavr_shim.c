@@ -1,7 +1,10 @@
 /* An Arduino Uno in simavr, in lockstep: for ctypes, see emulator.py. Compiled by the tests, never shipped.
  *
  * What simavr 1.6 does not do, this does: masked interrupts wait, bytes take the UART's true time both ways and overrun
- * its two-byte buffer, the EEPROM takes 3.4 ms a byte, and 1 mV on a pin is one count of the ADC. */
+ * its two-byte buffer, the EEPROM takes 3.4 ms a byte, the ADC holds its input as the conversion begins, 1 mV on a pin
+ * is one of its counts, and the SPI has a sensor at the other end. */
+#include "simavr_paddle.h"
+
 #include <simavr/avr_adc.h>
 #include <simavr/avr_eeprom.h>
 #include <simavr/avr_ioport.h>
@@ -18,15 +21,20 @@ DEFINE_FIFO(uint8_t, uart_fifo);
 
 enum { QUEUE = 1 << 16, LOG = 1 << 14, VECTORS = 26, RX_BUFFER = 3 /* two bytes, and the shift register */ };
 enum { /* addresses of the ATmega328P's registers */
-    PORTB = 0x25, DDRD = 0x2A, PORTD = 0x2B, EECR = 0x3F, TCCR0A = 0x44, TCCR0B = 0x45, OCR0B = 0x48, MCUSR = 0x54,
-    TIFR1 = 0x36, TIMSK1 = 0x6F, ADCSRA = 0x7A, UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
+    DDRB = 0x24, PORTB = 0x25, DDRC = 0x27, PORTC = 0x28, DDRD = 0x2A, PORTD = 0x2B, TIFR1 = 0x36, EECR = 0x3F,
+    TCCR0A = 0x44, TCCR0B = 0x45, OCR0A = 0x47, OCR0B = 0x48, SPCR = 0x4C, SPSR = 0x4D, SPDR = 0x4E, MCUSR = 0x54,
+    TIMSK1 = 0x6F, ADCSRA = 0x7A, ADMUX = 0x7C, TCCR2A = 0xB0, TCCR2B = 0xB1, OCR2A = 0xB3, OCR2B = 0xB4,
+    UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
 };
+enum { SPI_MODE_1 = 0x54 /* SPE, MSTR, CPHA of SPCR */, SPIF = 0x80 };
+enum { ONE_UPDATE = 100 /* cycles in which a motor's registers are written one after the other */ };
 enum { EEPE = 2, EEMPE = 4 }; /* bits of EECR */
 enum { ADEN = 0x80, ADSC = 0x40, ADPS = 7 }; /* of ADCSRA */
 
 typedef struct { uint64_t cycle; int32_t value; } event;
 typedef struct { uint64_t begin, count, total, worst; } cost;
 typedef struct { event at[LOG]; uint64_t count; } event_log;
+typedef struct { double from, to; uint64_t begin, end; } flight; /* of a voltage, from one level to another */
 
 typedef struct {
     avr_t *avr;
@@ -37,7 +45,11 @@ typedef struct {
     uint64_t out_head, out_tail, out_free; /* out_free: when the line is idle again */
     uint64_t in_busy, overruns;
     event_log duty, pin;                   /* changes, the latest LOG of them */
-    event_log sample, update;              /* conversions begun; writes of the PWM's control, changes or not */
+    event_log sample, update;              /* conversions begun; the motor's registers written, changes or not */
+    driver driver;
+    as5048a sensor;
+    flight analog[8];
+    uint8_t received;                      /* by the SPI */
     cost costs[VECTORS];
     struct vector { struct uno *uno; int number; } vectors[VECTORS];
     avr_ioport_external_t driven;          /* pins of port D */
@@ -60,19 +72,8 @@ static void note(event_log *log, uint64_t cycle, int32_t value)
         append(log, cycle, value);
 }
 
-/* Signed duty of the motor in 256ths: what the pins D5 and D8 do, whatever the firmware means. */
-int uno_duty(uno *u)
-{
-    const uint8_t *r = u->avr->data;
-    int duty = 0;
-    if (!(r[DDRD] & 0x20))
-        return 0;
-    if (!(r[TCCR0A] & 0x20))
-        duty = r[PORTD] & 0x20 ? 256 : 0;
-    else if (r[TCCR0B] & 7)
-        duty = r[TCCR0A] & 0x10 ? 255 - r[OCR0B] : r[OCR0B] + 1;
-    return r[PORTB] & 1 ? duty : -duty;
-}
+/* Signed duty of the motor in 256ths. */
+int uno_duty(uno *u) { return driver_duty(&u->driver, u->avr->data); }
 
 /* simavr shares a register between hooks four times in all: too few. */
 static void hook(uno *u, avr_io_addr_t address, avr_io_write_t call, int replace)
@@ -98,18 +99,64 @@ static void write_through(uno *u, avr_io_addr_t address, uint8_t value)
 static void on_motor(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     uno *u = param;
+    const uint64_t last = u->update.count ? u->update.at[(u->update.count - 1) % LOG].cycle : 0;
     write_through(u, address, value);
+    driver_look(&u->driver, avr->data);
+    as5048a_look(&u->sensor, avr->data, avr->cycle);
     note(&u->duty, avr->cycle, uno_duty(u));
-    if (address == TCCR0A)
-        append(&u->update, avr->cycle, uno_duty(u));
+    if (address < TCCR0A) /* a port */
+        return;
+    u->update.count -= last && avr->cycle - last < ONE_UPDATE;
+    append(&u->update, avr->cycle, uno_duty(u));
+}
+
+static double level(const flight *f, uint64_t cycle)
+{
+    const double part = cycle >= f->end ? 1.0 : cycle <= f->begin ? 0.0 : (double)(cycle - f->begin) / (double)(f->end - f->begin);
+    return f->from + part * (f->to - f->from);
 }
 
 static void on_conversion(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     uno *u = param;
-    if ((value & ADEN) && (value & ADSC))
-        append(&u->sample, avr->cycle, 1 << ((value & ADPS) ? value & ADPS : 1));
+    if ((value & ADEN) && (value & ADSC)) {
+        const int divider = 1 << ((value & ADPS) ? value & ADPS : 1), channel = avr->data[ADMUX] & 7;
+        append(&u->sample, avr->cycle, divider);
+        const double held = level(&u->analog[channel], avr->cycle + (uint64_t)(3 * divider / 2));
+        avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, channel), (uint32_t)(held + 0.5));
+    }
     write_through(u, address, value);
+}
+
+static avr_cycle_count_t on_exchanged(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    uno *u = param;
+    (void)when;
+    avr->data[SPSR] |= SPIF;
+    avr->data[SPDR] = u->received;
+    return 0;
+}
+
+/* A byte for the SPI. What a slave in another mode would hear is no word of its language. */
+static void on_exchange(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    uno *u = param;
+    static const int DIVIDERS[] = {4, 16, 64, 128};
+    const int divider = DIVIDERS[avr->data[SPCR] & 3] / (avr->data[SPSR] & 1 ? 2 : 1);
+    (void)address;
+    if ((avr->data[SPCR] & 0x50) != 0x50)
+        return;
+    const uint8_t mode_1 = (avr->data[SPCR] & 0x7C) == SPI_MODE_1;
+    u->received = as5048a_exchange(&u->sensor, mode_1 ? value : (uint8_t)(value >> 1), avr->cycle);
+    avr->data[SPSR] &= (uint8_t)~SPIF;
+    avr_cycle_timer_register(avr, (avr_cycle_count_t)(8 * divider), on_exchanged, u);
+}
+
+static uint8_t on_received(avr_t *avr, avr_io_addr_t address, void *param)
+{
+    (void)address;
+    avr->data[SPSR] &= (uint8_t)~SPIF;
+    return ((uno *)param)->received;
 }
 
 static void on_pin(avr_irq_t *irq, uint32_t value, void *param)
@@ -198,19 +245,23 @@ static void on_interrupt(avr_irq_t *irq, uint32_t value, void *param)
 
 static void hook_registers(uno *u, int carrier)
 {
-    const avr_io_addr_t timer[] = {TCCR0A, TCCR0B, OCR0B}, port[] = {PORTB, PORTD, DDRD}, link[] = {UCSR0B, UBRR0L};
-    for (int k = 0; k < 3; k++) {
+    const avr_io_addr_t timer[] = {TCCR0A, TCCR0B, OCR0A, OCR0B, TCCR2A, TCCR2B, OCR2A, OCR2B};
+    const avr_io_addr_t port[] = {PORTB, PORTC, PORTD, DDRB, DDRC, DDRD}, link[] = {UCSR0B, UBRR0L};
+    for (int k = 0; k < 8; k++)
         hook(u, timer[k], on_motor, !carrier);
+    for (int k = 0; k < 6; k++)
         hook(u, port[k], on_motor, 0);
-    }
     for (int k = 0; k < 2; k++)
         hook(u, link[k], on_uart, 0);
     hook(u, EECR, on_store, 0);
     hook(u, ADCSRA, on_conversion, 0);
+    hook(u, SPDR, on_exchange, 1);
+    u->avr->io[AVR_DATA_TO_IO(SPDR)].r.c = on_received;
+    u->avr->io[AVR_DATA_TO_IO(SPDR)].r.param = u;
     hook(u, TIMSK1, on_mask, 0);
 }
 
-/* carrier: let timer 0 run in simavr, too, so that D5 has edges; the duty needs only its registers, and time. */
+/* carrier: a pin of port D whose timer runs in simavr, too, so that it has edges; the duty needs only registers, and time. */
 uno *uno_new(const uint8_t *flash, uint32_t size, int carrier)
 {
     uno *u = calloc(1, sizeof *u);
@@ -227,8 +278,10 @@ uno *uno_new(const uint8_t *flash, uint32_t size, int carrier)
     uint32_t none = 0;
     avr_ioctl(u->avr, AVR_IOCTL_UART_SET_FLAGS('0'), &none);
     avr_irq_register_notify(avr_io_getirq(u->avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_sent, u);
-    avr_irq_register_notify(avr_io_getirq(u->avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 5), on_pin, u);
+    avr_irq_register_notify(avr_io_getirq(u->avr, AVR_IOCTL_IOPORT_GETIRQ('D'), carrier ? carrier : 5), on_pin, u);
     hook_registers(u, carrier);
+    u->driver = (driver){.drive = PWM_DIRECTION, .pins = {5, 8, NO_PIN, NO_PIN}, .held = 0xff};
+    u->sensor = (as5048a){.select = NO_PIN, .diagnostics = 0x0140};
     u->driven.name = 'D';
     for (int k = 1; k < VECTORS; k++) {
         u->vectors[k] = (struct vector){(struct uno *)u, k};
@@ -280,10 +333,27 @@ uint64_t uno_overruns(uno *u) { return u->overruns; }
 uint8_t *uno_memory(uno *u) { return u->avr->data; }
 uint32_t uno_pc(uno *u) { return u->avr->pc; }
 
-void uno_adc(uno *u, int channel, uint16_t counts)
+/* Let a pin of the ADC go to so many counts; it arrives when a flight under way ends, or now. */
+void uno_adc(uno *u, int channel, uint16_t counts) { u->analog[channel].to = counts; }
+
+/* Let it fly from where it is then to so many counts, between two cycles. */
+void uno_fly(uno *u, int channel, uint16_t counts, uint64_t begin, uint64_t end)
 {
-    avr_raise_irq(avr_io_getirq(u->avr, AVR_IOCTL_ADC_GETIRQ, channel), counts);
+    flight *f = &u->analog[channel];
+    *f = (flight){level(f, begin), counts, begin, end};
 }
+
+void uno_drive(uno *u, int drive, const uint8_t *pins)
+{
+    u->driver.drive = drive;
+    memcpy(u->driver.pins, pins, sizeof u->driver.pins);
+    u->driver.conflicts = 0;
+}
+
+driver *uno_driver(uno *u) { return &u->driver; }
+as5048a *uno_sensor(uno *u) { return &u->sensor; }
+int uno_high(uno *u, int pin) { return pin_high(u->avr->data, pin); }
+double uno_carrier(uno *u, int pin) { return pin_carrier(u->avr->data, pin); }
 
 /* Drive a pin of port D, whatever pull-up the firmware gives it. */
 void uno_pin(uno *u, int pin, int level)

@@ -13,7 +13,9 @@ _HEAD = re.compile(r"^([0-9a-f]{8}) <(.+)>:$")
 _LINE = re.compile(r"^ +([0-9a-f]+):\t[0-9a-f ]+\t(\w+)(?:\t([^;]*))?(?:; (.*))?$")
 _TARGET = re.compile(r"0x([0-9a-f]+)")
 _LEAVING = ("ret", "reti", "jmp", "rjmp", "ijmp")
+_SAVES = re.compile(r"<__prologue_saves__(?:\+(0x[0-9a-f]+))?>")
 RETURN = 2  # bytes of a return address
+SAVED = 18  # registers that __prologue_saves__ pushes, by one instruction of 2 bytes each; Y is lowered by X then
 
 
 class StackBound:
@@ -22,7 +24,7 @@ class StackBound:
     def __init__(self, elf):
         text = subprocess.run([tool("avr-objdump"), "-d", elf], check=True, capture_output=True, text=True).stdout
         self._known, self.names, self.own, self._calls, self._framing, name = {}, {}, {}, {}, None, None
-        last = None
+        self._loaded, last = {}, None
         for line in text.splitlines():
             if head := _HEAD.match(line):
                 address = int(head[1], 16)
@@ -45,6 +47,10 @@ class StackBound:
             self.own[name] += int(operands.split(",")[1], 0)
         elif operation == "rcall" and operands == ".+0":
             self.own[name] += RETURN  # room for two bytes
+        elif operation == "ldi" and operands.startswith(("r26,", "r27,")):
+            self._loaded[operands[:3]] = int(operands[4:], 0)
+        elif jump := _SAVES.search(comment):
+            self.own[name] += SAVED - int(jump[1] or "0", 0) // 2 + self._loaded["r26"] + 256 * self._loaded["r27"]
         elif operation == "icall":
             raise ValueError(f"{name} calls through a pointer")
         elif operation in ("call", "rcall", "jmp", "rjmp"):

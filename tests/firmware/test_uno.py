@@ -42,13 +42,17 @@ def image(tmp_path_factory):
     return image, symbols(elf)
 
 
+def hapkit(**changes):
+    return nominal("hapkit", **{"wired": 1, **changes})
+
+
 @pytest.fixture
 def start(image):
     """Start a board; ``board.probe`` is the probe's record."""
     boards = []
 
     def start(*, settings=None, run=0.002, **options):
-        board = Uno(image[0], eeprom=settings.to_bytes() if settings else b"", **options)
+        board = Uno(image[0], eeprom=(settings or hapkit()).to_bytes(), **options)
         boards.append(board)
         board.adc(500)
         board.probe = board.at(image[1]["probe"] - 0x800000, PROBE)
@@ -72,7 +76,7 @@ def test_the_motor_is_off_before_memory_is_initialised(start, image):
 
 @pytest.mark.parametrize("duty", [1, 4, 100, 255, 256, -1, -100, -256])
 def test_the_motor_follows_its_duty(start, duty):
-    board = start(carrier=True)
+    board = start(carrier=5)
     board.probe["duty"] = duty
     board.run(0.003)
     assert board.duty == duty
@@ -153,10 +157,6 @@ def sweep(board, sensor, begin, end, speed):
         worst = max(worst, abs(settled(board) - counts - (x - begin)))
     board.run(0.002)
     return worst, settled(board) - counts
-
-
-def hapkit(**changes):
-    return nominal("hapkit", **changes)
 
 
 @pytest.mark.parametrize("wrap", [920, 700])

@@ -21,15 +21,16 @@ static uint8_t reset_flags __attribute__((section(".noinit")));
 static volatile uint8_t ticking;
 static uint16_t period; /* clocks */
 
-/* The first instructions after a reset, before memory is initialised: the motor's driver gets a firm low. Then the cause
- * is read, and the watchdog is stopped: after its own reset it would run on, at its shortest. */
+/* The first instructions after a reset, before memory is initialised: whatever driver there is gets a firm low on the pin
+ * that has its PWM, but for D3, which an encoder may drive. Then the cause is read, and the watchdog is stopped: after its
+ * own reset it would run on, at its shortest. */
 void uno_reset(void) __attribute__((naked, used, section(".init3")));
 void uno_reset(void)
 {
-    PORTD &= (uint8_t)~UNO_PWM_PIN;
-    DDRD |= UNO_PWM_PIN;
-    PORTB &= (uint8_t)~UNO_DIRECTION_PIN;
-    DDRB |= UNO_DIRECTION_PIN;
+    PORTD &= (uint8_t)~UNO_LOW_D;
+    DDRD |= UNO_LOW_D;
+    PORTB &= (uint8_t)~UNO_LOW_B;
+    DDRB |= UNO_LOW_B;
     reset_flags = MCUSR;
     MCUSR = 0;
     wdt_disable();
@@ -107,6 +108,12 @@ ISR(TIMER1_COMPA_vect)
     TIMSK1 = _BV(OCIE1A);
 }
 
+void board_configure(hl_core *core)
+{
+    uno_motor_configure(&core->settings);
+    uno_sensor_configure(&core->settings);
+}
+
 void uno_watchdog_feed(hl_core *core)
 {
     if (core->ran) {
@@ -127,7 +134,7 @@ void board_alive(hl_core *core)
 int main(void)
 {
     _end = GUARD;
-    uno_motor_begin();
+    board_configure(&uno_core); /* of settings that name no pins */
     uno_uart_begin();
     TCCR1B = _BV(CS11);
     board_period(&uno_core, 1000);
