@@ -1,21 +1,88 @@
-"""Published constants of paddles, marked as what they are."""
+"""Published constants of paddles, marked as what they are.
+
+Lags are taken as pure delays: for slow motion a filter of first order is one, of its time constant, and for fast motion a
+delay asks more of a wall than the filter does, so that a limit errs to the safe side.
+"""
 
 from __future__ import annotations
+
+import math
 
 from ..base.telemetry import PaddleProfile
 from ..errors import PaddleError
 
-#: nothing here was measured by this package on anyone's device: a lab identifies m, b and friction
+
+def _counts_per_metre(counts, *, pulley, sector, handle):
+    """Counts per metre of handle travel, of a sensor with so many counts a turn of the motor's pulley; radii in metres."""
+    return counts / (2 * math.pi * pulley * handle / sector)
+
+
+#: nothing here was measured by this package on anyone's device: a lab identifies m, b and friction. The KMA210's lag and
+#: noise are left out, as the labs' numbers are those of a sensor without: calibration measures the noise, and for the lag
+#: the data sheet of its sister KMA199 (NXP, Rev. 2, table 11, note 5) names a filter of 0.7 kHz, 0.23 ms
 hapkit = PaddleProfile(
     name="hapkit",
     m=0.03,
     b=0.10,
     counts_per_metre=1 / 12.8e-6,
     force_max=3.3,
+    force_full=8.0,
+    carrier=62_500,
+    wiring="hapkit",
     nominal=True,
     source=(
         "published Hapkit sketches and dimensions for 12.8 um per count and 3.3 N (the lower of the published peaks, "
         "3.3 to 8 N); m and b are published nowhere: round, illustrative values"
+    ),
+)
+hapkit_as5048a = PaddleProfile(
+    name="hapkit_as5048a",
+    m=0.03,
+    b=0.10,
+    counts_per_metre=_counts_per_metre(16_384, pulley=0.005, sector=0.075, handle=0.08),
+    force_max=3.3,
+    force_full=0.0183 / (0.005 * 0.08 / 0.075),
+    sensor_delay=100e-6,
+    sensor_noise=0.06 / 360 / _counts_per_metre(1, pulley=0.005, sector=0.075, handle=0.08),
+    carrier=62_500,
+    wiring="hapkit_as5048a",
+    nominal=True,
+    source=(
+        "sketch of Stanford's ME327 (github.com/13strings/me327, helpers.h) for 16384 counts a turn, chip select D10, PWM D5, "
+        "direction D8 and full duty at 0.0183 N m; radii of that team's paddle, 5, 75 and 80 mm; the sensor's 0.1 ms and 0.06 "
+        "degrees rms are those of its data sheet as remembered, not looked up; m, b and force limit illustrative"
+    ),
+)
+longhorn = PaddleProfile(
+    name="longhorn",
+    m=0.04,
+    b=0.15,
+    counts_per_metre=_counts_per_metre(48, pulley=0.005, sector=0.075, handle=0.085),
+    rounding="floor",
+    force_max=2.4,
+    force_full=0.0167 / (0.005 * 0.085 / 0.075),
+    carrier=31_372,
+    wiring="longhorn_d11",
+    nominal=True,
+    source=(
+        "Longhorn Hapkit of UT Austin (github.com/connormmckelvey/Longhorn-Hapkit, firmware/1DOF/1_basic.cpp) for 48 counts a "
+        "turn and radii of 5, 75 and 85 mm; sketch of A. Majewicz Fey of 27 August 2021 for 0.0167 N m at full duty, D4, D5 "
+        "and D11, encoder D2 and D3; m, b and force limit illustrative"
+    ),
+)
+motor_shield = PaddleProfile(
+    name="motor_shield",
+    m=0.04,
+    b=0.15,
+    counts_per_metre=_counts_per_metre(2000, pulley=0.0042, sector=0.075, handle=0.07),
+    force_max=2.0,
+    force_full=3.0,
+    carrier=7_812,
+    wiring="motor_shield",
+    nominal=True,
+    source=(
+        "radii of a Hapkit 3.0 on an Uno with a motor shield, 4.2, 75 and 70 mm (github.com/bgromov/Hapkit3.0, hapkit3.h); "
+        "an encoder of 500 lines, m, b and forces illustrative"
     ),
 )
 eth = PaddleProfile(
@@ -29,7 +96,7 @@ eth = PaddleProfile(
         "not included"
     ),
 )
-PROFILES = {p.name: p for p in (hapkit, eth)}
+PROFILES = {p.name: p for p in (hapkit, hapkit_as5048a, longhorn, motor_shield, eth)}
 
 
 def profile(name: str) -> PaddleProfile:
@@ -37,7 +104,7 @@ def profile(name: str) -> PaddleProfile:
 
     Parameters
     ----------
-    name : {"hapkit", "eth"}
+    name : {"hapkit", "hapkit_as5048a", "longhorn", "motor_shield", "eth"}
 
     Examples
     --------

@@ -152,7 +152,8 @@ class Settings(ShowsItself):
     def device(self, T):
         """Return what limits read of a paddle that samples every T [s]; its mass and damping only once they were identified."""
         counts = 1 / abs(self.metres_per_count)
-        return Device(m=self.m, b=self.b, T=T, coulomb=self.coulomb, counts_per_metre=counts) if self.m else Device(T=T)
+        known = {"m": self.m, "b": self.b, "coulomb": self.coulomb, "counts_per_metre": counts} if self.m else {}
+        return Device(T=T, sensor_delay=self.sensor_delay, **known)
 
     def duty(self, force, steps=None):
         """Return the duty, -1 ... 1, that a board gives for a force at the handle [N]; rounded where it has so many steps."""
@@ -205,15 +206,41 @@ def _between(xs, ys, x):
     return ys[k - 1] + (x - xs[k - 1]) * (ys[k] - ys[k - 1]) / (xs[k] - xs[k - 1])
 
 
-#: what the profiles do not say. Hapkit: KMA210 on its nominal 920 counts per half turn, 12.8 um per count; the square-root
-#: law and 8 N at full duty are of the published sketches; travel, heating and speed are guesses that keep a motor cool
+#: what the profiles do not say: travel, heating and speed are guesses that keep a motor cool
+_USUAL = {"travel_min": -0.05, "travel_max": 0.05, "heating_time": 60.0, "speed_max": 2.0}
+#: and for each its wiring, which is that of its build in wirings.py. Hapkits: the square-root law is of the published
+#: sketches, and the KMA210 has nominally 920 counts per half turn
 _NOMINAL = {
     "hapkit": {
-        "travel_min": -0.05, "travel_max": 0.05, "force_full": 8.0, "force_continuous": 2.0, "heating_time": 60.0,
-        "speed_max": 2.0, "motor_law": MOTOR_LAWS["SQRT"], "sensor": SENSORS["MAGNETORESISTIVE"], "wrap": 920,
+        "force_continuous": 2.0, "motor_law": MOTOR_LAWS["SQRT"], "sensor": SENSORS["MAGNETORESISTIVE"], "wrap": 920,
         "motor_pins": pin_word(5, 8),
     },
+    "hapkit_as5048a": {
+        "force_continuous": 1.5, "motor_law": MOTOR_LAWS["SQRT"], "sensor": SENSORS["AS5048A"], "wrap": 16_384,
+        "motor_pins": pin_word(5, 8),
+    },
+    "longhorn": {
+        "force_continuous": 1.0, "sensor": SENSORS["QUADRATURE"], "drive": DRIVES["TWO_INPUTS_ENABLE"],
+        "motor_pins": pin_word(4, 5, 11),
+    },
+    "motor_shield": {
+        "force_continuous": 1.0, "sensor": SENSORS["QUADRATURE"], "drive": DRIVES["SHIFT_REGISTER"],
+        "motor_pins": pin_word(11, 12, 4, 8),
+    },
 }  # fmt: skip
+#: of a profile and of settings, by the same name
+_OF_PROFILE = (
+    "force_max",
+    "force_full",
+    "m",
+    "b",
+    "coulomb",
+    "duty_dead",
+    "carrier",
+    "sensor_delay",
+    "sensor_noise",
+    "sensor_flight",
+)
 #: where a Hapkit has its sensor (A2), and an Uno an encoder or the chip select of an AS5048A instead
 _SENSOR_PINS = {"MAGNETORESISTIVE": pin_word(16), "QUADRATURE": pin_word(2, 3), "AS5048A": pin_word(10)}
 
@@ -229,28 +256,34 @@ def nominal(profile, **changes):
 
     Parameters
     ----------
-    profile : {"hapkit"}
+    profile : {"hapkit", "hapkit_as5048a", "longhorn", "motor_shield"}
     **changes
         Fields that are known better.
     """
     if profile not in _NOMINAL:
         raise PaddleError(f"no nominal settings for {profile!r}; they exist for {', '.join(_NOMINAL)}.")
     kind = named_profile(profile)
-    known = {"metres_per_count": 1 / kind.counts_per_metre, "force_max": kind.force_max, "m": kind.m, "b": kind.b}
-    values = {**known, "coulomb": kind.coulomb, **_NOMINAL[profile], **changes}
+    known = {"metres_per_count": 1 / kind.counts_per_metre, **{name: getattr(kind, name) for name in _OF_PROFILE}}
+    values = {**known, **_USUAL, **_NOMINAL[profile], **changes}
     usual = {SENSORS[name]: pins for name, pins in _SENSOR_PINS.items()}.get(values["sensor"], NO_PINS)
     return Settings(**{"sensor_pins": usual, **values})
 
 
 def simulated(paddle):
     """Return the settings of a board around a simulated paddle: ideal where the paddle says nothing."""
-    full = paddle.force_max or 20.0
+    full = paddle.force_full or paddle.force_max or 20.0
+    curve = {name: getattr(paddle, name) for name in ("duty_25", "duty_50", "duty_75") if paddle.duty_25 is not None}
     return Settings(
+        **curve,
+        motor_law=MOTOR_LAWS["MEASURED" if curve else "LINEAR"],
+        duty_dead=paddle.duty_dead,
+        sensor_delay=paddle.sensor_delay,
+        sensor_noise=paddle.noise,
         wired=1,
         checked=1,
         metres_per_count=1 / (paddle.counts_per_metre or 1e7),  # without an encoder a tenth of a micrometre
-        travel_min=-0.5, travel_max=0.5, force_full=full, force_max=full, force_continuous=full, heating_time=60.0,
-        speed_max=10.0, m=paddle.m, b=paddle.b, coulomb=paddle.coulomb,
+        travel_min=-0.5, travel_max=0.5, force_full=full, force_max=paddle.force_max or full, force_continuous=full,
+        heating_time=60.0, speed_max=10.0, m=paddle.m, b=paddle.b, coulomb=paddle.coulomb,
     )  # fmt: skip
 
 

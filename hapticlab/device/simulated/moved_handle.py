@@ -45,14 +45,18 @@ class Handle:
     """
 
     def __init__(self, paddle, x=0.0, v=0.0, steps=0):
-        self.paddle, self.x, self.v, self.steps = paddle, float(x), float(v), steps
+        self.paddle, self.steps = paddle, steps
         self._plant = paddle.plant
         self._parameters = dict(zip((c.name for c in self._plant.channels()), values(paddle), strict=True))
         self._past = [0.0] * (self._plant.whole + self._plant.split)
-        age = sensor_age(paddle)
-        self._read = [self.x - self.v * (age + k * paddle.T) for k in range(self._plant.readings)]
+        self.put(x, v)
         self._streams = [np.random.default_rng([paddle.seed, stream]) for stream in (0, 1)]
         self._rows, self._first_row = (), steps
+
+    def put(self, x, v=0.0):
+        """Put the handle to x [m] with v [m/s]; to its sensor it came evenly."""
+        self.x, self.v, age = float(x), float(v), sensor_age(self.paddle)
+        self._read = [self.x - self.v * (age + k * self.paddle.T) for k in range(self._plant.readings)]
 
     @property
     def t(self):

@@ -1,7 +1,8 @@
 """``sim://``: the firmware's own core on this computer, closed around a simulated paddle, behind a serial port.
 
-``sim://hapkit`` takes the mechanics of a profile; ``sim://hapkit?pace=real`` runs by the clock on the wall. Without a
-pace time is virtual: it passes while somebody reads, as fast as the computer can, so that the same calls give the same run.
+``sim://hapkit`` takes the mechanics, the sensor and the drive of a profile; ``sim://hapkit?pace=real`` runs by the clock
+on the wall. Without a pace time is virtual: it passes while somebody reads, as fast as the computer can, so that the
+same calls give the same run.
 """
 
 import threading
@@ -12,8 +13,10 @@ from serial import SerialBase
 
 from ...errors import PaddleError, PortError
 from ..board.host_board import HostBoard
-from ..board.settings import nominal, simulated
+from ..board.settings import changed, nominal, simulated
+from ..link.messages import MOTOR_LAWS, SENSORS
 from ..profiles import PROFILES
+from ..simulated.angle_sensor import AngleSensor
 from ..simulated.moved_handle import Handle
 from ..simulated.simulated_paddle import SimulatedPaddle
 
@@ -46,12 +49,14 @@ class Serial(SerialBase):
         ``settings`` are what sensor and motor really are, ``store`` what the board keeps of them: the same if None, and
         nothing, as on a new board, if b"".
         """
-        paddle, usual = _mechanics(self._at, paddle)
+        paddle, usual, kept = _mechanics(self._at, paddle)
         with self._changed:
             self.settings = (settings or usual).to_float32()
-            self.board = HostBoard(self.settings.to_bytes() if store is None else store)
+            kept = kept if settings is None else self.settings
+            self.board = HostBoard(kept.to_bytes() if store is None else store)
             self.handle = Handle(paddle, x).with_period(self.board.period)
             self._per_metre = 1 / self.settings.metres_per_count
+            self._angle = self._angle_sensor()
             self.board.tick(self._counts(), self.now())  # it has looked at its sensor before anybody asks
         if not self.lockstep and not hasattr(self, "_thread"):
             self._thread = threading.Thread(target=self._run_by_the_clock, name=self.port, daemon=True)
@@ -60,7 +65,8 @@ class Serial(SerialBase):
     def lead(self, x):
         """Put the handle to x [m], at rest, as a hand would; the board's sensor has seen it there."""
         with self._changed:
-            self.handle.x, self.handle.v = float(x), 0.0
+            self.handle.put(x)
+            self._angle = self._angle_sensor()
             self.board.tick(self._counts(), self.now())
 
     def close(self):
@@ -114,7 +120,14 @@ class Serial(SerialBase):
     def _counts(self):
         """What the sensor reads now."""
         counts = self.handle.counts()
-        return round(self.handle.seen * self._per_metre) if counts is None else counts
+        counts = round(self.handle.seen * self._per_metre) if counts is None else counts
+        return counts if self._angle is None else self._angle.reading(counts, self.handle.t)
+
+    def _angle_sensor(self):
+        """The sensor's own part in what the board reads: None where every count is as good as its reading."""
+        settings = self.settings
+        flies = settings.sensor != SENSORS["QUADRATURE"] and settings.sensor_flight > 0
+        return AngleSensor(settings.wrap, settings.sensor_flight) if flies else None
 
     def _run_by_the_clock(self):
         begun = time.monotonic() - self.now()
@@ -145,12 +158,14 @@ def _parts(url):
 
 
 def _mechanics(at, paddle):
-    """Return the paddle and the settings of its board."""
+    """Return the paddle, the settings that are true of it, and those that its board keeps."""
+    if paddle is None and at in PROFILES:
+        paddle = SimulatedPaddle.from_profile(at)
+        if PROFILES[at].wiring:
+            kept = nominal(at, wired=1, checked=1)
+            return paddle, kept, kept
     if paddle is not None:
-        return paddle, simulated(paddle)
-    if at == "hapkit":
-        return SimulatedPaddle.from_profile("hapkit"), nominal("hapkit", wired=1, checked=1)
-    if at in PROFILES:
-        found = SimulatedPaddle.from_profile(at)
-        return found, simulated(found)
+        true = simulated(paddle)
+        plain = {} if paddle.compensated else {"duty_dead": 0.0, "motor_law": MOTOR_LAWS["LINEAR"]}
+        return paddle, true, changed(true, **plain)
     raise PaddleError(f"sim://{at}: no such paddle; there are {', '.join(f'sim://{name}' for name in PROFILES)}.")
