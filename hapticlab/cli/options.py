@@ -16,7 +16,7 @@ from .begin import Command, Parser, lab_number
 #: `hapticlab tradeoff --targets`, `hapticlab calibrate --only`, `hapticlab grade --sandbox`: names that modules define which take
 #: long to import; a test compares them
 TARGETS = ("pc", *(name for name, given in BOARDS.items() if given.hz))
-STEPS = ("stops", "sign", "force")
+STEPS = ("wiring", "stops", "sensor", "sign", "force")
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
 LEVELS = ("auto", "namespaces", "user", "landlock", "none")
 #: of `hapticlab grade --memory` [MiB]: 16 TiB; systems take no more for a limit, and end each process where they are given more
@@ -157,7 +157,7 @@ def _add_board_commands(commands, shared):
         "ports": "list the serial ports, and which of them connect() asks",
         "doctor": "walk from the cable to the motor and say what is wrong",
         "flash": "write the firmware into a board, such as an Arduino Uno, over its bootloader",
-        "calibrate": "measure stops, motor sign and force constant, and store them on the board",
+        "calibrate": "confirm the wiring, measure stops, sensor, motor sign and force, and store them on the board",
         "bench": "try a paddle step by step, motor off first, and write one report of what was predicted and found",
     }
     made = {}

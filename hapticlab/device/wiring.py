@@ -38,8 +38,6 @@ SENSOR_WORDS = {
     "QUADRATURE": "a quadrature encoder with lines A and B",
     "AS5048A": "an AS5048A magnet sensor over SPI",
 }
-#: a carrier is taken for one of the board's if it is this close to it
-CARRIER_PART = 0.01
 #: pins that are listed one by one
 FEW = 8
 
@@ -157,15 +155,18 @@ def require_possible(wiring: Wiring, board: Board) -> None:
 
 def pin_problem(wiring, pins):
     """Return the first thing that a board cannot do, as what was given, what it can do and what to do; None if there is none."""
-    used = wiring.pins() | (dict(pins.spi) if wiring.sensor == "AS5048A" else {})
-    for role, pin in used.items():
+    at = wiring.pins()
+    for role, pin in at.items():
         if pin not in pins.names or pin in pins.busy:
             why = f"uses {pins.name(pin)} for {pins.busy[pin]}" if pin in pins.busy else f"has {_listed(pins, pins.names)}"
             return f"{role} on {pins.name(pin)}", why, "Move this wire to another pin"
-        twice = [other for other, at in used.items() if at == pin and other != role]
+    fixed = dict(pins.spi) if wiring.sensor == "AS5048A" else {}
+    fixed |= {k: pin for k, pin in pins.register.items() if wiring.drive == "SHIFT_REGISTER" and k not in at}
+    used = list((at | fixed).items())
+    for k, (role, pin) in enumerate(used):
+        twice = [other for other, taken in used[k + 1 :] if taken == pin]
         if twice:
             return f"{role} and {twice[0]} on {pins.name(pin)}", "takes one wire per pin", "Move one of them to another pin"
-    at = wiring.pins()
     for role in WITH_PWM[wiring.drive]:
         if at[role] not in pins.pwm:
             return f"{role} on {pins.name(at[role])}", f"has PWM on {_listed(pins, pins.pwm)}", "Move this wire to one of them"
@@ -173,9 +174,15 @@ def pin_problem(wiring, pins):
 
 
 def _of_drive(wiring, pins, at):
-    if wiring.drive == "SHIFT_REGISTER" and at["PWM"] not in pins.shield:
+    if wiring.drive != "SHIFT_REGISTER":
+        return None
+    if at["PWM"] not in pins.shield:
         fits = ", ".join(f"{pins.name(pin)} ({motor})" for pin, motor in pins.shield.items())
         return f"a motor shield on {pins.name(at['PWM'])}", f"takes a shield's motor on {fits or 'no pin'}", "Choose one of them"
+    for role in ("LATCH", "CLK", "DATA"):
+        if at[role] != pins.register[role]:
+            own = f"has the shield's {role} on {pins.name(pins.register[role])}"
+            return f"{role} on {pins.name(at[role])}", own, "Choose this pin"
     return None
 
 
@@ -192,9 +199,10 @@ def _of_sensor(wiring, pins, at):
 
 
 def _of_carrier(wiring, pins):
-    if any(abs(wiring.carrier - own) <= CARRIER_PART * own for own in pins.carriers):
+    high, low = pins.carriers[0], pins.carriers[-1]
+    if low <= wiring.carrier <= high:
         return None
-    return f"PWM of {wiring.carrier} Hz", f"has {', '.join(f'{own} Hz' for own in pins.carriers)}", "Choose one of them"
+    return f"PWM of {wiring.carrier} Hz", f"has {low} Hz to {high} Hz", f"Choose one of {', '.join(map(str, pins.carriers))}"
 
 
 def _listed(pins, numbers):

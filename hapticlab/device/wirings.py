@@ -109,6 +109,17 @@ class Build(ShowsItself):
     def _mark(self, terminal):
         return self.marked.get(terminal, terminal)
 
+    def in_short(self) -> str:
+        """Return its name and the pin of each role.
+
+        Examples
+        --------
+        >>> from hapticlab.device.wirings import build
+        >>> build("hapkit").in_short()
+        'hapkit (PWM D5, DIR D8, OUT A2)'
+        """
+        return f"{self.name} ({', '.join(f'{role} {self.pins.name(pin)}' for role, pin in self.wiring.pins().items())})"
+
     def table(self) -> list[str]:
         """Return the wires as the lines of a table.
 

@@ -130,6 +130,23 @@ def let(hand):
     return acts
 
 
+def led_to_the_right(person):
+    """An answer: move the handle slowly from stop to stop, from now on."""
+    begin = person.handle.t
+
+    def hand(t, x, v):
+        return 300.0 * (min(-STOP + 0.04 * (t - begin), STOP + 0.005) - x) - 20.0 * v
+
+    person.handle.hand = hand
+
+
+#: a person whose Hapkit is wired as it should be
+WIRED = {
+    "Which paddle is built": "hapkit",
+    "Move the handle to the LEFT stop, let it rest": at(-STOP - 0.005),
+    "slowly to the RIGHT stop, within": led_to_the_right,
+    "Is every wire where": "yes",
+}
 HOMING = {"one stop, then to the other": led_to_both_stops}
 STOPS = {
     "to the LEFT stop": at(-STOP - 0.005),

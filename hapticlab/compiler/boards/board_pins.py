@@ -15,11 +15,12 @@ class Pins:
     names : dict of int to str
         What is printed beside each pin that a wiring may use.
     busy : dict of int to str
-        Pins that the board itself uses, with their use.
+        Pins that no driver and no sensor may be on by themselves, with their use.
     pwm : dict of int to str
         Pins that can carry PWM, with the timer that makes it.
     carriers : tuple of int
-        Frequencies that the PWM can have [Hz].
+        Frequencies of the PWM to choose from [Hz]; the first is the greatest, the last the least that the board takes. It takes
+        those between them, too, and rounds them down to what its timers can do.
     analog : tuple of int
     quadrature : tuple of (int, int)
         Pairs of pins that can count the lines A and B of an encoder.
@@ -27,6 +28,8 @@ class Pins:
         Pins of the bus that an SPI sensor uses in addition to its chip select.
     shield : dict of int to str
         PWM pins of an Adafruit-type motor shield, with the motor that each switches; empty where no shield fits.
+    register : dict of str to int
+        Pins to which the shield's shift register is soldered, by what they do.
     supply : str
         The pin that supplies a sensor.
     """
@@ -39,6 +42,7 @@ class Pins:
     quadrature: tuple[tuple[int, int], ...]
     spi: Mapping[str, int]
     shield: Mapping[int, str] = field(default_factory=dict)
+    register: Mapping[str, int] = field(default_factory=dict)
     supply: str = "5V"
 
     def name(self, pin: int) -> str:
@@ -46,27 +50,30 @@ class Pins:
         return self.names.get(pin, f"pin {pin}")
 
 
+_LINK = "the serial link to the computer"
 #: ATmega328P data sheet (Microchip DS40002061B): timer 1 is the firmware's clock, so D9 and D10 have no PWM. INT0 and INT1 are
-#: D2 and D3. Timers 0 and 2 count to 256 or, phase-correct, up and down to 255 (510 clocks), and divide 16 MHz by 1 or 8.
+#: D2 and D3. Timers 0 and 2 count to 256 or, phase-correct, up and down to 255 (510 clocks), and divide 16 MHz by 1, 8 or 64
 UNO_PINS = Pins(
     names={**{k: f"D{k}" for k in range(14)}, **{14 + k: f"A{k}" for k in range(6)}},
-    busy={0: "the serial link to the computer", 1: "the serial link to the computer"},
+    busy={0: _LINK, 1: _LINK, 13: "the light that its bootloader blinks"},
     pwm={5: "timer 0", 6: "timer 0", 3: "timer 2", 11: "timer 2"},
-    carriers=(62_500, 31_372, 7_812),
+    carriers=(62_500, 31_372, 7_812, 3_921, 976, 490),
     analog=(14, 15, 16, 17, 18, 19),
     quadrature=((2, 3),),
     spi={"MOSI": 11, "MISO": 12, "SCK": 13},
     shield={11: "M1", 3: "M2", 6: "M3", 5: "M4"},
+    register={"LATCH": 12, "CLK": 4, "DATA": 8, "the shield's enable": 7},
 )
-#: RP2040 data sheet: any GP pin counts, and has PWM of a slice; GP26 to GP28 are analog. GP23 to GP25 and GP29 are not on the
-#: header of a Pico (its data sheet, section 2.1); the SPI pins are those that it marks as default
+_GP = (*range(23), 26, 27, 28)
+#: RP2040 data sheet: any GP pin counts, and has PWM of a slice; GP26 to GP28 are analog. GP23 to GP25 are not on the header of
+#: a Pico (its data sheet, section 2.1). The SPI pins are those that it marks as default; PIO reads lines on pins in a row
 PICO_PINS = Pins(
-    names={k: f"GP{k}" for k in (*range(23), 26, 27, 28)},
+    names={k: f"GP{k}" for k in _GP},
     busy={},
-    pwm={k: f"slice {k // 2 % 8}" for k in (*range(23), 26, 27, 28)},
-    carriers=(62_500, 31_250, 20_000),
+    pwm={k: f"slice {k // 2 % 8}" for k in _GP},
+    carriers=(100_000, 62_500, 31_250, 20_000, 2_000),
     analog=(26, 27, 28),
-    quadrature=tuple((k, k + 1) for k in (*range(22), 26, 27)),
+    quadrature=tuple((k, k + 1) for k in _GP if k + 1 in _GP),
     spi={"MOSI": 19, "MISO": 16, "SCK": 18},
     supply="3V3",
 )

@@ -1,4 +1,4 @@
-"""Calibrate a paddle: stops, motor sign, force constant, one after the other, each agreed to before it is stored."""
+"""Calibrate a paddle: wiring, stops, sensor, motor sign and force, one after the other, each agreed to before it is stored."""
 
 from __future__ import annotations
 
@@ -8,18 +8,20 @@ from typing import TYPE_CHECKING
 
 from ...errors import PaddleError
 from ..board.settings import changed, nominal
-from ..link.messages import SENSORS
+from .built import require_wiring
 from .force_constant import measure_force
 from .person import Person
+from .sensor_readings import measure_noise
 from .sign_check import check_sign
 from .stops import measure_stops
 from .stored_settings import lead_home, offer
+from .wiring_check import check_wiring
 
 if TYPE_CHECKING:
     from ..board.serial_paddle import SerialPaddle
     from ..board.settings import Settings
 
-STEPS = ("stops", "sign", "force")
+STEPS = ("wiring", "stops", "sensor", "sign", "force")
 
 
 def calibrate(
@@ -34,7 +36,7 @@ def calibrate(
         The person who holds the handle and answers; by default the person at this terminal.
     date : int, optional
         Date that is stored with the calibration, such as 20261120; today by default.
-    only : {"stops", "sign", "force"}, optional
+    only : {"wiring", "stops", "sensor", "sign", "force"}, optional
         This step alone.
 
     Returns
@@ -49,9 +51,11 @@ def calibrate(
 
     Notes
     -----
-    Stops: two sweeps in which the person moves the handle from stop to stop, and the travel measured with a ruler.
-    Sign: see hapticlab.device.setup.sign_check. Force: a kitchen scale or a hanging weight, least squares. Mass,
-    damping, friction, heating and speed limits stay nominal: a lab identifies them.
+    Wiring: which paddle is built, its sensor checked with the motor and its supply off, and confirmed by the person; no
+    step gives a force before. Stops: two sweeps in which the person moves the handle from stop to stop, and the travel
+    measured with a ruler. Sensor: its noise at rest. Sign: see hapticlab.device.setup.sign_check. Force: a kitchen scale
+    or a hanging weight, least squares, with the dead band of the driver. Mass, damping, friction, heating and speed limits
+    stay nominal: a lab identifies them.
     """
     if only is not None and only not in STEPS:
         raise PaddleError(f"only = {only!r}; needs one of the steps {', '.join(STEPS)}, or None for all.")
@@ -59,13 +63,15 @@ def calibrate(
     if not 20200101 <= date <= 99991231:
         raise PaddleError(f"date = {date}; needs today's date as a number, such as 20261120.")
     person = person or Person()
-    if paddle.settings is None and not _begin(paddle, person):
-        return None
-    for step in STEPS if only is None else (only,):
+    steps = STEPS if only is None else (only,)
+    if paddle.settings is None and "wiring" not in steps:
+        steps = ("wiring", *steps)  # a new board: what is built comes first
+    for step in steps:
         person.say(f"\n== {step}")
         if not _STEP[step](paddle, person, date):
             break
-    person.say("\n".join(["", f"{paddle}", *still_nominal(paddle.settings)]))
+    if paddle.settings is not None:
+        person.say("\n".join(["", f"{paddle}", *still_nominal(paddle.settings)]))
     return paddle.settings
 
 
@@ -77,26 +83,13 @@ def still_nominal(settings):
     return [f"nominal    {', '.join(names)}: as shipped, not measured on this paddle"] if names else []
 
 
-def _begin(paddle, person):
-    """Store nominal constants on a new board: the sensor's kind decides how it counts. Returns whether it was agreed to."""
-    kind = person.choose(
-        "This board has no settings yet. Which sensor does the paddle have?",
-        {"hapkit": "magnetoresistive sensor on A2, as on a Hapkit", "encoder": "quadrature encoder on D2 and D3"},
-    )
-    sensor = SENSORS["MAGNETORESISTIVE" if kind == "hapkit" else "QUADRATURE"]
-    begun = nominal("hapkit", sensor=sensor, ident=_named(0))
-    stored = offer(paddle, person, begun, ["to store   nominal constants of a Hapkit, motor at 0.5 N at most, to begin with"])
-    return stored and offer(
-        paddle,
-        person,
-        changed(begun, wired=1),
-        ["to store   wiring confirmed: driver's PWM on D5, direction on D8; sensor on A2, or encoder on D2 and D3"],
-    )
-
-
 def _named(ident):
     """Return the 16 bits that name a paddle, drawn where it has none."""
     return ident or 1 + secrets.randbelow(0xFFFF)
+
+
+def _wiring(paddle, person, date):
+    return check_wiring(paddle, person, ident=_named(0))
 
 
 def _stops(paddle, person, date):
@@ -111,7 +104,13 @@ def _stops(paddle, person, date):
     return offer(paddle, person, settings, words)
 
 
+def _sensor(paddle, person, date):
+    noise, words = measure_noise(paddle, person)
+    return offer(paddle, person, changed(paddle.settings, sensor_noise=noise, date=date), words)
+
+
 def _sign(paddle, person, date):
+    require_wiring(paddle)
     lead_home(paddle, person)
     found = check_sign(paddle, person)
     person.say(str(found))
@@ -119,9 +118,10 @@ def _sign(paddle, person, date):
 
 
 def _force(paddle, person, date):
+    require_wiring(paddle)
     settings, words = measure_force(paddle, person)
     settings = changed(settings, date=date, ident=_named(settings.ident))
     return offer(paddle, person, settings, [*words, f"before     force_full = {paddle.settings.force_full:g} N"])
 
 
-_STEP = {"stops": _stops, "sign": _sign, "force": _force}
+_STEP = {"wiring": _wiring, "stops": _stops, "sensor": _sensor, "sign": _sign, "force": _force}

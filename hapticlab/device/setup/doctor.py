@@ -49,7 +49,7 @@ class Report(ShowsItself):
 
 
 def doctor(url: str | None = None, person: Person | None = None, *, tell: Callable[[Any], Any] = lambda check: None) -> Report:
-    """Check notebook, rights, cable, port, firmware, settings, latency, loop, link, sensor, home and motor sign in turn.
+    """Check notebook, rights, cable, port, firmware, settings, wiring, latency, loop, link, sensor, home and motor sign in turn.
 
     Parameters
     ----------
@@ -114,6 +114,7 @@ def _walk(url, person):
 
 def _on_board(paddle, person):
     yield checks.settings(paddle)
+    yield checks.wiring(paddle, person)
     yield checks.latency(paddle)
     yield from checks.loop_and_link(paddle)
     yield checks.sensor_at_rest(paddle)

@@ -11,18 +11,22 @@ import numpy as np
 
 from ...errors import HapticlabError, LinkError, PaddleError, PortError
 from ..board.homing import state_flag
+from ..board.settings import pins_of
 from ..link.messages import RESET_CAUSES, SENSORS, row_of, table_hash
 from ..link.serial_ports import open_port
+from ..wiring import Wiring
+from ..wirings import built_as
+from .built import ask_built, board_with_pins
 from .flash import FLASHED, find_bootloader
 from .person import agrees
-from .sensor_readings import JUMP, LEAST_SWEEP, NOISY, readings, watch
+from .sensor_readings import JUMP, LEAST_SWEEP, NOISY, REST, readings, watch
 from .sign_check import check_sign
 from .stored_settings import lead_home
 
 #: requests timed, and medians [s] from which the link is slow and from which it is an FTDI left as its driver starts it
 PINGS, SLOW, LAZY = 200, 4e-3, 8e-3
-#: s of watching: the loop, the handle at rest, the handle moved
-LOOP, REST, MOVED = 2.0, 1.0, 6.0
+#: s of watching: the loop, the handle moved
+LOOP, MOVED = 2.0, 6.0
 #: part of the period by which it may vary
 JITTER = 0.05
 
@@ -108,6 +112,27 @@ def settings(paddle):
         )
     day = str(kept.date)
     return Check("settings", "ok", f"{words}, calibrated {day[:4]}-{day[4:6]}-{day[6:]}")
+
+
+def wiring(paddle, person):
+    """Whether the board is told the wiring that is built, and whether a person has confirmed it."""
+    kept = paddle.settings
+    if kept is None:
+        return Check("wiring", "skipped", "whether it is confirmed: needs a calibration")
+    if not pins_of(kept.motor_pins):
+        return Check("wiring", "ok", "none: a simulated paddle has no pins")
+    board = board_with_pins(paddle.board["board"])
+    told = built_as(board, Wiring.of(kept))
+    if person is not None:
+        built = ask_built(person, board)
+        if built.wiring != told.wiring:
+            words = f"the board is set to {told.in_short()}, but {built.in_short()} is built"
+            cure = "switch the supply of the motor off\nrun `hapticlab calibrate --only wiring`"
+            return Check("wiring", "fault", words, cure)
+    if not kept.wired:
+        cure = "run `hapticlab calibrate --only wiring`"
+        return Check("wiring", "attention", f"not confirmed, so the motor stays off: {told.in_short()}", cure)
+    return Check("wiring", "ok", f"confirmed: {told.in_short()}")
 
 
 def latency(paddle):

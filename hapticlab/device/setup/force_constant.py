@@ -3,8 +3,7 @@
 from ...errors import PaddleError
 from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
-from ..board.settings import changed
-from ..link.messages import MOTOR_LAWS, UNCHECKED_FORCE_N
+from ..link.messages import UNCHECKED_FORCE_N
 from .force_fit import fit_force, law_of
 from .person import number
 from .stored_settings import lead_home
@@ -12,7 +11,7 @@ from .stored_settings import lead_home
 #: [m/s^2], standard
 GRAVITY = 9.80665
 #: on a scale: parts of the largest force that the motor stands for ever
-LEVELS, PART = (0.0, 0.25, 0.5, 0.75, 1.0), 0.9
+LEVELS, PART = (0.0, 0.05, 0.15, 0.3, 0.5, 0.75, 1.0), 0.9
 #: with a weight: steps of the ramp, how long each lasts [s], and the motion that is a lift [m]
 STEPS, LASTS, LIFT = 120, 0.04, 2e-3
 #: s for a lifted handle to come to rest at the other stop
@@ -42,7 +41,7 @@ def measure_force(paddle, person):
         forces, newtons = on_scale(paddle, person) if how == "scale" else with_weights(paddle, person)
     duties = [abs(settings.duty(force, paddle.board["duty_full"])) for force in forces]
     found = fit_force(duties, newtons, settings, intercept=how == "scale")
-    return changed(settings, force_full=found.force_full, motor_law=MOTOR_LAWS[found.law]), found.words(law_of(settings))
+    return found.into(settings), found.words(law_of(settings), settings.duty_dead)
 
 
 def on_scale(paddle, person):

@@ -16,20 +16,41 @@ CLEARLY = 2.0
 LEAST, MOST = 0.1, 100.0
 
 
+#: dead bands that are tried, parts of full duty; one is seen from so many points on
+DEAD_BANDS, POINTS = np.linspace(0.0, 0.4, 161), 6
+#: part of full duty that a measurement must reach before its own curve may be stored
+MOST_OF_IT = 0.75
+
+
 @dataclass(frozen=True)
 class ForceFit:
-    """force_full [N] with its standard error [N], the law, the residuals [N, rms] of both laws."""
+    """force_full [N] with its standard error [N], the law, the residuals [N, rms] of all laws, the duties of the motor.
+
+    ``duties`` are parts of full duty: of no force (the dead band), and of a quarter, half and three quarters of force_full.
+    """
 
     force_full: float
     error: float
     law: str
     residuals: dict
+    duties: tuple
 
-    def words(self, was):
-        """The fit in lines; ``was`` is the law the board had."""
+    def into(self, settings):
+        """Return the settings with what was measured."""
+        names = ("duty_dead", "duty_25", "duty_50", "duty_75")[: 4 if self.law == "MEASURED" else 1]
+        values = dict(zip(names, self.duties, strict=False))
+        return changed(settings, force_full=self.force_full, motor_law=MOTOR_LAWS[self.law], **values)
+
+    def words(self, was, dead=0.0):
+        """The fit in lines; ``was`` is the law the board had, ``dead`` its dead band."""
         rms = ", ".join(f"{1e3 * a:.1f} mN with {law}" for law, a in self.residuals.items() if np.isfinite(a))
         error = f" +- {self.error:.2g}" if np.isfinite(self.error) else ""
         lines = [f"measured   force_full = {self.force_full:.4g}{error} N", f"measured   residual {rms}"]
+        if self.duties[0] != dead:
+            lines.append(f"measured   no force below {100 * self.duties[0]:.1f} % duty, the dead band; {100 * dead:.1f} % before")
+        if self.law == "MEASURED":
+            quarters = ", ".join(f"{100 * duty:.0f}" for duty in self.duties[1:])
+            lines.append(f"measured   {quarters} % duty for a quarter, half and three quarters of the force")
         if self.law != was:
             return [*lines, f"measured   force follows {self.law}, not {was}; the stored law changes too"]
         told = len([a for a in self.residuals.values() if np.isfinite(a)]) > 1
@@ -44,7 +65,8 @@ def fit_force(duties, forces, settings, *, intercept=True):
     duties, forces : array_like, shape (points,)
         0 ... 1, and [N].
     settings : Settings
-        The board's. LINEAR or SQRT in the place of its law is taken only if it fits clearly better; a MEASURED law stays.
+        The board's. LINEAR or SQRT in the place of its law, or another dead band, is taken only if it fits clearly better. A
+        MEASURED law stays. It is begun where neither law fits, but the forces reach three quarters of full duty.
     intercept : bool
         Whether an offset (tare, constant friction) is fitted.
 
@@ -64,14 +86,22 @@ def fit_force(duties, forces, settings, *, intercept=True):
     (4.0, 'LINEAR')
     """
     duties, forces, law = np.asarray(duties, float), np.asarray(forces, float), law_of(settings)
-    laws = (law,) if law == "MEASURED" else ("LINEAR", "SQRT")
-    fits = {name: _line(_parts(duties, settings, name), forces, intercept) for name in laws}
+    tried = [(name, settings.duty_dead) for name in ((law,) if law == "MEASURED" else ("LINEAR", "SQRT"))]
+    fits = {name: _line(_parts(duties, settings, name, dead), forces, intercept) for name, dead in tried}
     if len(duties) < (4 if intercept else 3):
         fits = {name: (full, error, rms if name == law else np.nan, rest) for name, (full, error, rms, rest) in fits.items()}
-    best = next((name for name in laws if CLEARLY * fits[name][2] < fits[law][2]), law)
+    best, dead = next((name for name, _ in tried if CLEARLY * fits[name][2] < fits[law][2]), law), settings.duty_dead
+    if len(duties) >= POINTS and law != "MEASURED":
+        other = _dead_band(duties, forces, settings, intercept)
+        if CLEARLY * other[2] < fits[best][2]:
+            best, dead = other[:2]
+            fits[best] = other[3]
     full, error, rms, rest = fits[best]
     _require_growth(full, forces)
     allowed = max(POOR_PART * np.ptp(forces), POOR_N)
+    residuals = {name: fit[2] for name, fit in fits.items()}
+    if rms > allowed and max(duties) >= MOST_OF_IT:
+        return _measured_curve(duties, forces, residuals)
     if rms > allowed:
         worst = int(np.argmax(np.abs(rest)))
         raise PaddleError(
@@ -80,7 +110,35 @@ def fit_force(duties, forces, settings, *, intercept=True):
             "handle touches only the scale, and measure again."
         )
     _require_sense(full, error)
-    return ForceFit(full, error, best, {name: fit[2] for name, fit in fits.items()})
+    return ForceFit(full, error, best, residuals, (dead,))
+
+
+def _dead_band(duties, forces, settings, intercept):
+    """Return law, dead band, residual [N] and fit of the law and the dead band that fit best."""
+    found = []
+    for name in ("LINEAR", "SQRT"):
+        for dead in DEAD_BANDS[DEAD_BANDS < max(duties)]:
+            fit = _line(_parts(duties, settings, name, float(dead)), forces, intercept)
+            found.append((name, float(dead), fit[2], fit))
+    return min(found, key=lambda one: one[2])
+
+
+def _measured_curve(duties, forces, residuals):
+    """Return the fit of a motor that follows no law: straight lines through what was measured, and on to full duty."""
+    order = np.argsort(duties)
+    duties, forces = duties[order], forces[order] - forces[order][0]  # the first reading, at no duty, is the tare
+    if np.any(np.diff(forces) < -POOR_N):
+        raise PaddleError("force: the force falls as the duty grows. Tap the table before each reading, and measure again.")
+    forces = np.maximum.accumulate(forces)
+    slope = (forces[-1] - forces[-2]) / (duties[-1] - duties[-2])
+    full = float(forces[-1] + slope * (1 - duties[-1]))
+    _require_sense(full, np.nan)
+    felt = int(np.argmax(forces > POOR_N))
+    rise = (forces[felt + 1] - forces[felt]) / (duties[felt + 1] - duties[felt])
+    dead = float(np.clip(duties[felt] - forces[felt] / rise, duties[max(felt - 1, 0)], duties[felt]))
+    known = np.append(duties[felt:], 1.0), np.append(forces[felt:], full)
+    quarters = tuple(float(np.interp(part * full, [0.0, *known[1]], [dead, *known[0]])) for part in (0.25, 0.5, 0.75))
+    return ForceFit(full, np.nan, "MEASURED", residuals, (dead, *quarters))
 
 
 def law_of(settings):
@@ -88,9 +146,9 @@ def law_of(settings):
     return next(name for name, number in MOTOR_LAWS.items() if number == settings.motor_law)
 
 
-def _parts(duties, settings, law):
-    """Return the parts of the full force that duties give by a law."""
-    motor = changed(settings, motor_law=MOTOR_LAWS[law], motor_sign=1, force_full=1.0)
+def _parts(duties, settings, law, dead):
+    """Return the parts of the full force that duties give by a law, with a dead band."""
+    motor = changed(settings, motor_law=MOTOR_LAWS[law], motor_sign=1, force_full=1.0, duty_dead=dead)
     return np.array([motor.force_of_duty(duty) for duty in duties])
 
 

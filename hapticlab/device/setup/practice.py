@@ -9,13 +9,16 @@ import numpy as np
 
 from ...errors import PaddleError
 from ..board.serial_paddle import SerialPaddle
-from ..board.settings import nominal
+from ..board.settings import changed, nominal
 from ..hand.hand import Hand
 from ..hand.intents import MinimumJerk
 from ..link.serial_ports import open_port
 from ..simulated.moved_handle import Handle
 from ..simulated.simulated_paddle import SimulatedPaddle
+from ..wiring import Wiring
+from ..wirings import build
 from .person import Person
+from .wiring_check import rewired
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,8 +30,8 @@ GRAM = 9.80665e-3
 class PractisingPerson(Person):
     """Do with a simulated handle what you would do with a real one, and print each question with its answer."""
 
-    def __init__(self, board: SerialPaddle):
-        self.board, self.port = board, board.exchange.port
+    def __init__(self, board: SerialPaddle, built: str = "hapkit"):
+        self.board, self.port, self.built = board, board.exchange.port, built
 
     def hold(self, hand: Hand, seconds: float) -> None:
         """Let a hand hold the handle from now on, and wait."""
@@ -52,9 +55,17 @@ class PractisingPerson(Person):
         self.board.wait(0.02)
         return f"{abs(self.port.settings.force_of_duty(self.port.board.duty)) / GRAM:.0f}"
 
+    def sweep(self) -> None:
+        """Move the handle slowly to the right stop from now on."""
+        now = self.port.handle
+        path = MinimumJerk(start=now.x, end=0.044, duration=3.0, begin=now.t)
+        self.hold(Hand("grip", intent=path), 0)
+
     def ask(self, question: str) -> str:
         answer = ""
-        if "LEFT" in question:
+        if question.startswith("Press Enter, then move the handle slowly to the RIGHT"):
+            self.sweep()
+        elif "LEFT" in question:
             self.move(-0.044)
         elif "RIGHT" in question:
             self.move(0.044)
@@ -67,27 +78,53 @@ class PractisingPerson(Person):
             answer = "88"  # mm, with a ruler
         elif "scale show" in question:
             answer = self.weigh()
+        elif question.startswith("Let the handle rest"):
+            self.move(0.0)
         elif not question.startswith("Press Enter, then move the handle"):  # of a doctor, who asks for nothing else
             raise PaddleError(f"the simulated person of the practice board has no answer to: {question}")
         print(question, answer)
         return answer
 
     def choose(self, question: str, options: Mapping[str, str]) -> str:
-        answer = next(word for word in ("right", "mm", "scale", "away", "yes") if word in options)
+        if question.startswith("Which paddle is built"):
+            answer = self.built
+        elif question.startswith("By the stored calibration"):
+            answer = "yes" if "on the right" in question else "no"  # of the walls
+        else:
+            answer = next(word for word in ("right", "mm", "scale", "away", "yes") if word in options)
+        if question.startswith("Correct it"):
+            self.port.sensor = lambda counts: counts  # the wire is where it belongs now
         print(question, answer)
         return answer
 
 
-def practice_board() -> tuple[SerialPaddle, Person]:
+#: what is wrong with a practice board, in addition to its constants
+TROUBLES = ("motor wires", "wrong wiring", "loose wire", "sensor direction", "dead band")
+
+
+def practice_board(trouble: str = "motor wires") -> tuple[SerialPaddle, Person]:
     """Make a simulated board that needs calibration, and a simulated person who does what ``hl.calibrate`` asks.
 
     The board believes its data sheet, 12.8 um per count and 8 N at full duty. The handle and the motor really have 12.1 um
-    per count and 7 N, and the two wires of the motor are swapped.
+    per count and 7 N. One thing more is wrong, and calibration finds it.
+
+    Parameters
+    ----------
+    trouble : {"motor wires", "wrong wiring", "loose wire", "sensor direction", "dead band"}
+        ``"motor wires"``: the two wires of the motor are swapped. ``"wrong wiring"``: the board is set to a Hapkit, but a
+        Longhorn Hapkit is built. ``"loose wire"``: one line of its encoder has no contact until it is corrected.
+        ``"sensor direction"``: the lines of its encoder were swapped since the last calibration. ``"dead band"``: the
+        driver gives no force below 12 % duty.
 
     Returns
     -------
     board : SerialPaddle
     person : Person
+
+    Raises
+    ------
+    PaddleError
+        If there is no such trouble.
 
     Examples
     --------
@@ -100,12 +137,31 @@ def practice_board() -> tuple[SerialPaddle, Person]:
     >>> f"{1e6 * kept.metres_per_count:.1f} um per count"
     '12.1 um per count'
     """
+    if trouble not in TROUBLES:
+        raise PaddleError(f"trouble = {trouble!r}; a practice board has one of {', '.join(TROUBLES)}.")
+    hapkit = nominal("hapkit", ident=1, wired=1)
+    longhorn = changed(rewired(hapkit, build("longhorn_d6").wiring), wired=1)
+    is_hapkit = trouble in ("motor wires", "dead band")
+    store = hapkit if is_hapkit or trouble == "wrong wiring" else longhorn
+    if trouble == "sensor direction":
+        store = changed(store, metres_per_count=12.1e-6, date=20260901)
     port = open_port("sim://hapkit")
+    truth = {"metres_per_count": 12.1e-6, "force_full": 7.0, "duty_dead": 0.12 if trouble == "dead band" else 0.0}
     port.put_on(
         SimulatedPaddle(m=0.03, b=0.1, T=1e-3),
-        settings=nominal("hapkit", metres_per_count=12.1e-6, force_full=7.0),
-        store=nominal("hapkit", ident=1, wired=1).to_bytes(),
+        settings=changed(hapkit if is_hapkit else longhorn, **truth),
+        store=store.to_bytes(),
     )
-    port.wiring = -1
     board = SerialPaddle("sim://hapkit", port=port)
-    return board, PractisingPerson(board)
+    port.wiring = -1 if trouble == "motor wires" else 1
+    port.sensor = _sensor(trouble, board)
+    return board, PractisingPerson(board, "hapkit" if is_hapkit else "longhorn_d6")
+
+
+def _sensor(trouble, board):
+    """Return what a board reads of its sensor's counts, as a function."""
+    if trouble == "wrong wiring":  # nothing is on the pins that the board reads, until it is told the right ones
+        return lambda counts: counts if Wiring.of(board.settings) == build("longhorn_d6").wiring else 0
+    if trouble == "loose wire":  # of the four edges of an encoder those of one line are left, which go up and down
+        return lambda counts: counts // 2 % 2
+    return (lambda counts: -counts) if trouble == "sensor direction" else (lambda counts: counts)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...errors import PaddleError
 from ...scene.notation.symbols import n, parameters, x
 from ...scene.scene import Scene
 
@@ -13,6 +14,8 @@ NOISY, LEAST_SWEEP = 6, 50
 JUMP = 20
 #: part of the sweep at either end where a handle that hits its stop is no jump of the sensor
 STOPS_PART = 0.02
+#: s of watching a handle at rest
+REST = 1.0
 #: counts that one line of an encoder alone makes, and changes from which that is clear
 TO_AND_FRO, CHANGES = 2, 10
 
@@ -46,6 +49,25 @@ class Readings:
     def is_to_and_fro(self):
         """Whether the count only goes up and down by one, as where one line of an encoder is missing."""
         return 0 < self.sweep <= TO_AND_FRO and np.count_nonzero(np.diff(self.counts)) >= CHANGES
+
+
+def measure_noise(paddle, person):
+    """Return the standard deviation of a resting handle's reading [m], and what was found, in lines.
+
+    Raises
+    ------
+    PaddleError
+        If the handle moved, or the sensor is too noisy.
+    """
+    person.ask("Let the handle rest, do not touch it, and press Enter. The motor is off.")
+    rest = readings(paddle, REST)
+    if rest.sweep > NOISY:
+        raise PaddleError(
+            f"sensor: at rest the reading wanders by {rest.sweep:.0f} counts; needs {NOISY} at most. Let the handle rest against "
+            "a stop. If it wanders again, check the supply of the sensor, and keep its wires away from those of the motor."
+        )
+    noise = float(np.std(rest.counts)) * abs(paddle.settings.metres_per_count)
+    return noise, [f"measured   at rest {rest.sweep:.0f} counts wide, {noise * 1e6:.3g} um rms"]
 
 
 def watch(paddle, seconds):

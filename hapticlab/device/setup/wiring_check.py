@@ -11,15 +11,15 @@ from ..board.settings import changed, nominal
 from ..wiring import Wiring
 from ..wirings import built_as
 from .built import ask_built, board_with_pins, show
-from .sensor_readings import JUMP, LEAST_SWEEP, NOISY, readings
+from .sensor_readings import JUMP, LEAST_SWEEP, NOISY, REST, readings
 from .stored_settings import offer, store
 
 #: until the stops are measured: counts after which a reading repeats, and metres per count of a Hapkit's pulley and sector.
 #: KMA210: 920 counts in half a turn are 12.8 um each; AS5048A: 16384 in a whole turn; encoder: illustrative
 WRAP = {"MAGNETORESISTIVE": 920, "AS5048A": 16384}
 STEP = {"MAGNETORESISTIVE": 12.8e-6, "AS5048A": 12.8e-6 * 2 * 920 / 16384, "QUADRATURE": 10e-6}
-#: s of watching a handle at rest, and one that is moved from stop to stop; how often a person may correct a wire
-REST, MOVED, TRIES = 1.0, 5.0, 3
+#: s of watching a handle that is moved from stop to stop; how often a person may correct a wire
+MOVED, TRIES = 5.0, 3
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,7 @@ def check_wiring(paddle, person, ident=0):
             return _right_direction(paddle, person, found) and _confirmed(paddle, person)
         if person.choose("Correct it, with the supply off. Look again?", {"yes": "it is corrected", "no": "stop here"}) == "no":
             break
-    person.say("The wiring is not confirmed, so the motor stays off. Run `hapticlab calibrate --only wiring` again.")
-    return False
+    return _left_off(paddle, person)
 
 
 def rewired(settings, wiring):
@@ -115,7 +114,7 @@ def _fault(seen, wiring, at):
 def _of_motion(seen, wiring, at):
     """Return what is wrong with a sweep from stop to stop, in words."""
     lines = _lines(wiring, at)
-    if seen.is_to_and_fro:
+    if seen.is_to_and_fro and wiring.sensor == "QUADRATURE":
         return f"the count only goes up and down by {seen.sweep:.0f}: only one line of the encoder arrives. Check {lines}"
     if seen.sweep < LEAST_SWEEP:
         return (
@@ -190,9 +189,16 @@ def _confirmed(paddle, person):
         {"yes": "confirm the wiring", "no": "the motor stays off"},
     )
     if answer == "no":
-        person.say("The wiring is not confirmed, so the motor stays off.")
-        return False
+        return _left_off(paddle, person)
     if not paddle.settings.wired:
         store(paddle, changed(paddle.settings, wired=1))
     person.say("Confirmed. Before the step sign, switch the supply on and keep a hand at its switch: at first 0.5 N at most.")
     return True
+
+
+def _left_off(paddle, person):
+    """Take back what was confirmed before, so that no motor is driven over a wiring that nobody trusts; return False."""
+    if paddle.settings.wired:
+        store(paddle, changed(paddle.settings, wired=0, checked=0))
+    person.say("The wiring is not confirmed, so the motor stays off. Run `hapticlab calibrate --only wiring` again.")
+    return False

@@ -27,7 +27,8 @@ LONGEST_BURST = 0.03
 class Serial(SerialBase):
     """A port of a simulated board; see the module. ``paddle`` may be replaced before the first read.
 
-    ``wiring`` is what lies between the board and its motor: 1 right, -1 swapped wires, 0 no supply.
+    ``wiring`` is what lies between the board and its motor: 1 right, -1 swapped wires, 0 no supply. ``sensor`` is what lies
+    between the sensor and the board: counts in, counts out.
     """
 
     bytes_per_second = float("inf")
@@ -120,8 +121,12 @@ class Serial(SerialBase):
     def _counts(self):
         """What the sensor reads now."""
         counts = self.handle.counts()
-        counts = round(self.handle.seen * self._per_metre) if counts is None else counts
+        counts = self.sensor(round(self.handle.seen * self._per_metre) if counts is None else counts)
         return counts if self._angle is None else self._angle.reading(counts, self.handle.t)
+
+    def sensor(self, counts):
+        """Return what arrives of the sensor's counts."""
+        return counts
 
     def _angle_sensor(self):
         """The sensor's own part in what the board reads: None where every count is as good as its reading."""

@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 import workbench as bench
-from workbench import HOMING, STOP, STOPS, at, flicking, holding, holding_either_side, swaying
+from workbench import HOMING, STOP, STOPS, WIRED, at, flicking, holding, holding_either_side, swaying
 
 from hapticlab.device.board.settings import Settings, nominal
 from hapticlab.device.board.upload import read_settings
@@ -106,15 +106,14 @@ class TestStored:
         assert paddle.exchange.port.board.store == before
         assert paddle.settings == KNOWN.to_float32()
 
-    def test_a_new_board_begins_with_nominal_constants_if_agreed(self):
+    def test_a_new_board_begins_with_its_wiring_if_agreed(self):
         paddle = bench.paddle()
         assert paddle.settings is None
-        refusing = bench.Scripted(paddle, {"Which sensor": "hapkit", "Store these settings": "no"})
+        refusing = bench.Scripted(paddle, {"Which paddle is built": "hapkit", "Store these settings": "no"})
         assert calibrate(paddle, refusing, date=TODAY) is None
         assert set(paddle.exchange.port.board.store[: SETTINGS_STRUCT.size]) == {0xFF}
-        answers = STOPS | YES | {"Which sensor": "hapkit"}
-        found = calibrate(paddle, bench.Scripted(paddle, answers), date=TODAY, only="stops")
-        assert 0 < found.ident < 65536
+        found = calibrate(paddle, bench.Scripted(paddle, WIRED | STOPS | YES), date=TODAY, only="stops")
+        assert 0 < found.ident < 65536 and (found.wired, found.checked, found.date) == (1, 0, TODAY)
         assert f"host {found.ident:04X}" in str(paddle)
 
     def test_a_board_that_keeps_something_else_is_refused(self, monkeypatch):
@@ -128,7 +127,7 @@ class TestStored:
         paddle = bench.paddle(store=KNOWN.to_bytes())
         with pytest.raises(PaddleError, match="date = 21"):
             calibrate(paddle, date=21)
-        with pytest.raises(PaddleError, match="stops, sign, force"):
+        with pytest.raises(PaddleError, match="wiring, stops, sensor, sign, force"):
             calibrate(paddle, date=TODAY, only="mass")
 
 
@@ -258,6 +257,16 @@ CHECKED = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, 
 
 
 class TestForce:
+    @pytest.mark.parametrize(("law", "dead"), [("LINEAR", 0.08), ("SQRT", 0.12)])
+    def test_a_scale_tells_the_dead_band_too(self, law, dead):
+        paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=7.0, motor_law=MOTOR_LAWS[law], duty_dead=dead)
+        person = bench.Scripted(paddle, HOMING | YES | on_a_scale())
+        found = calibrate(paddle, person, date=TODAY, only="force")
+        assert found.motor_law == MOTOR_LAWS[law]
+        assert found.duty_dead == pytest.approx(dead, abs=0.005)  # the fit tries steps of 0.0025; the scale has steps of 1 g
+        assert found.force_full == pytest.approx(7.0, rel=0.02)
+        assert "the dead band; 0.0 % before" in person.words
+
     @pytest.mark.parametrize("truth", [5.0, 8.0, 12.5])
     @pytest.mark.parametrize("law", ["LINEAR", "SQRT"])
     def test_a_scale_tells_constant_and_law(self, truth, law):
@@ -296,10 +305,10 @@ class TestForce:
     @pytest.mark.parametrize(
         ("readings", "words"),
         [
-            (["0", "20", "40", "60", "30"], "no motor law fits.*tap the table"),
-            (["200", "150", "100", "50", "0"], "presses in the other direction"),
-            (["3"] * 5, "no supply"),
-            (["0", "4000", "8000", "12000", "16000"], "Did you enter grams"),
+            (["0", "20", "40", "60", "30", "90", "20"], "no motor law fits.*tap the table"),
+            (["200", "190", "170", "150", "100", "50", "0"], "presses in the other direction"),
+            (["3"] * 7, "no supply"),
+            (["0", "800", "2400", "4800", "8000", "12000", "16000"], "Did you enter grams"),
         ],
     )
     def test_nonsense_is_refused(self, readings, words):
@@ -368,6 +377,20 @@ class TestForce:
         assert found.force_full == pytest.approx(slope, rel=1e-12)
         assert found.error == pytest.approx(math.sqrt(covariance[0, 0]), rel=1e-9)
 
+    def test_a_motor_of_no_law_keeps_its_measured_curve(self):
+        """A driver that saturates: the curve is drawn here by hand, and its duties are read from it."""
+        duties = np.array([0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0])
+        forces = np.interp(duties, [0, 0.12, 0.3, 0.5, 1.0], [0, 0, 2.0, 3.2, 4.0])
+        kept = nominal("hapkit", force_continuous=4.0)
+        found = fit_force(duties, 0.01 + forces, kept)
+        assert (found.law, found.force_full) == ("MEASURED", pytest.approx(4.0, rel=1e-6))
+        assert found.duties == pytest.approx((0.12, 0.21, 0.3, 0.475), abs=0.02)  # 0 N, 1 N, 2 N and, a chord above, 3 N
+        stored = found.into(kept)
+        for duty, force in zip(duties[2:], forces[2:], strict=True):
+            assert stored.force_of_duty(duty) == pytest.approx(force, abs=0.15)  # four straight lines instead of seven
+        again = fit_force(duties, 0.5 * forces, stored)
+        assert (again.law, again.force_full) == ("MEASURED", pytest.approx(2.0, rel=0.03))
+
     def test_one_weight_tells_no_law(self):
         found = fit_force([0.2], [0.3], nominal("hapkit", motor_law=MOTOR_LAWS["LINEAR"]), intercept=False)
         assert found.force_full == pytest.approx(1.5, rel=1e-12)
@@ -386,7 +409,7 @@ class TestForce:
 @pytest.mark.wide
 def test_all_of_it_in_one_go():
     paddle = bench.paddle(wiring=-1, force_full=6.5, metres_per_count=-11.9e-6)
-    answers = {"Which sensor": "hapkit"} | STOPS | YES | HOMING | tugged(swaying()) | on_a_scale()
+    answers = WIRED | STOPS | YES | HOMING | tugged(swaying()) | on_a_scale()
     person = bench.Scripted(paddle, answers)
     found = calibrate(paddle, person, date=TODAY)
     assert (found.checked, found.date) == (1, TODAY)

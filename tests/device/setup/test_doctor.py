@@ -164,7 +164,7 @@ class TestBoard:
         assert report.exit_code == 0
         assert tuple(told) == report.checks
         assert states(report) == {
-            "computer": "ok", "port": "ok", "firmware": "ok", "reset": "ok", "settings": "ok", "latency": "ok",
+            "computer": "ok", "port": "ok", "firmware": "ok", "reset": "ok", "settings": "ok", "wiring": "ok", "latency": "ok",
             "loop": "ok", "link": "ok", "noise": "ok", "sensor": "skipped", "home": "skipped", "motor": "skipped",
         }  # fmt: skip
         assert str(report).count("needs a person") == 1 and "a person must move the handle" in " ".join(str(report).split())
@@ -186,7 +186,7 @@ class TestBoard:
 
     def person(self, paddle, hand, **answers):
         led = {"move the handle slowly from stop to stop": lambda p: setattr(p.handle, "hand", hand)}
-        return bench.Scripted(paddle, led | HOMING | {"motor's sign is": "no"} | answers)
+        return bench.Scripted(paddle, led | HOMING | {"Which paddle is built": "hapkit", "motor's sign is": "no"} | answers)
 
     def test_with_a_person(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())

@@ -6,12 +6,41 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.device.setup import sign_check
+from hapticlab.device.wiring import Wiring
 
 
 def test_a_question_that_the_simulated_person_does_not_know_is_told():
     _, person = hl.devices.practice_board()
     with pytest.raises(hl.errors.PaddleError, match="no answer to: Move the handle slowly to the left stop and press Enter"):
         person.ask("Move the handle slowly to the left stop and press Enter")
+
+
+@pytest.mark.always("wrong wiring-*", "dead band-*")
+@pytest.mark.parametrize(
+    ("trouble", "words"),
+    [
+        ("wrong wiring", "board D6       driver EN"),
+        ("loose wire", "only one line of the encoder arrives"),
+        ("sensor direction", "A and B of the encoder were swapped since the calibration"),
+        ("dead band", "no force below 12.0 % duty, the dead band"),
+    ],
+)
+def test_a_calibration_finds_the_trouble_and_cures_it(trouble, words, monkeypatch, capsys):
+    monkeypatch.setattr(sign_check.secrets, "randbits", lambda _: 5)
+    board, person = hl.devices.practice_board(trouble)
+    kept = hl.calibrate(board, person)
+    assert words in capsys.readouterr().out
+    truth = board.exchange.port.settings
+    assert Wiring.of(kept) == Wiring.of(truth)
+    assert (kept.wired, kept.checked) == (1, 1)
+    assert kept.force_full == pytest.approx(7.0, rel=0.01) and kept.duty_dead == pytest.approx(truth.duty_dead, abs=0.005)
+    direction = -1 if trouble == "sensor direction" else 1  # the walls stay on the right
+    assert kept.metres_per_count == pytest.approx(12.1e-6 * direction, rel=1e-3)
+
+
+def test_a_trouble_that_is_none_lists_those_there_are():
+    with pytest.raises(hl.errors.PaddleError, match="trouble = 'smoke'; a practice board has one of motor wires, wrong wiring"):
+        hl.devices.practice_board("smoke")
 
 
 @pytest.mark.always("1")

@@ -1,0 +1,182 @@
+"""The wiring is asked, checked with the motor off, and confirmed: scripted persons at paddles that are wired right and wrong."""
+
+import re
+
+import pytest
+import workbench as bench
+from workbench import STOP, WIRED
+
+import hapticlab as hl
+from hapticlab.device.board.settings import Settings, changed, nominal
+from hapticlab.device.link.messages import SETTINGS_STRUCT
+from hapticlab.device.setup import doctor_checks, stored_settings, wiring_check
+from hapticlab.device.setup.built import ask_built
+from hapticlab.device.setup.calibrate import calibrate
+from hapticlab.device.setup.person import Person
+from hapticlab.device.wiring import Wiring
+from hapticlab.device.wirings import build
+from hapticlab.errors import LinkError, PaddleError
+
+YES = {"Store these settings": "yes"}
+HAPKIT = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, ident=7, wired=1, checked=1)
+LONGHORN = changed(
+    wiring_check.rewired(HAPKIT, build("longhorn_d6").wiring), metres_per_count=2 * STOP / 7000, wired=1, checked=1
+)
+BUILT = {"Which paddle is built": "longhorn_d6"}
+STOPPED = {"Look again": "no"}
+
+
+def kept(paddle):
+    return Settings.from_bytes(paddle.exchange.port.board.store[: SETTINGS_STRUCT.size])
+
+
+def walk(store, answers, sensor=None):
+    """Calibrate the wiring of a paddle with a person who gives these answers; return paddle and person."""
+    paddle = bench.paddle(store=store.to_bytes(), sensor=store.sensor)
+    if sensor is not None:
+        paddle.exchange.port.sensor = sensor
+    person = bench.Scripted(paddle, answers)
+    calibrate(paddle, person, date=20261121, only="wiring")
+    return paddle, person
+
+
+def test_another_wiring_is_stored_unconfirmed_and_then_confirmed(monkeypatch):
+    commits, upload = [], stored_settings.upload
+    monkeypatch.setattr(stored_settings, "upload", lambda link, to, data: commits.append(data) or upload(link, to, data))
+    paddle, person = walk(HAPKIT, YES | WIRED | BUILT)
+    commits = [Settings.from_bytes(data) for data in commits]
+    assert [(one.wired, one.checked) for one in commits] == [(0, 0), (1, 0)]
+    now = kept(paddle)
+    assert (Wiring.of(now), now.ident) == (build("longhorn_d6").wiring, 7)
+    assert (now.date, now.metres_per_count) == (0, pytest.approx(10e-6)), "constants of the other sensor are not this one's"
+    for words in (
+        "board D6       driver EN",
+        "board D2       sensor A",
+        "supply of the motor OFF",
+        "counts increase to the right",
+    ):
+        assert words in person.words
+    assert person.words.index("supply of the motor OFF") < person.words.index("LEFT stop, let it rest")
+
+
+def test_the_same_wiring_keeps_its_calibration():
+    calibrated = changed(HAPKIT, date=20261101)
+    paddle, person = walk(calibrated, YES | WIRED | {"By the stored calibration x increases to the right": "yes"})
+    assert kept(paddle) == calibrated.to_float32()
+    assert "it is checked again" in person.words
+
+
+@pytest.mark.parametrize("answer", ["Is every wire where", "Look again"])
+def test_what_the_person_does_not_confirm_leaves_the_motor_off(answer):
+    """A wiring that was confirmed before counts no more either."""
+    broken = (lambda counts: 0) if answer == "Look again" else None
+    paddle, person = walk(HAPKIT, YES | WIRED | {answer: "no"}, broken)
+    assert (kept(paddle).wired, kept(paddle).checked) == (0, 0)
+    assert "so the motor stays off" in person.words
+    paddle.home(at=0.0)
+    with pytest.raises(LinkError, match="nobody has confirmed the wiring"):
+        paddle.run(hl.wall(k=100, x_o=0.01), 0.01)
+    for step in ("sign", "force"):
+        with pytest.raises(PaddleError, match="nobody has confirmed the wiring of this paddle"):
+            calibrate(paddle, person, date=20261121, only=step)
+
+
+WRONG = {
+    "nothing arrives": (LONGHORN, lambda counts: 0, "changed by 0 counts.*Check A on D2 and B on D3, the sensor's VCC and GND"),
+    "one line": (LONGHORN, lambda counts: counts // 2 % 2, "only one line of the encoder arrives. Check A on D2 and B on D3"),
+    "a floating input": (
+        HAPKIT,
+        lambda counts: counts * 7919 % 97,
+        "at rest the reading wanders by .* OUT on A2 may have no contact",
+    ),
+    "a loose magnet": (HAPKIT, lambda counts: counts + 60 * (counts // 900 % 2), "jumps by .* OUT on A2 has a loose contact"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_wire_is_named(case):
+    store, sensor, words = WRONG[case]
+    own = BUILT if store is LONGHORN else {}
+    if case == "a floating input":  # the handle trembles by some counts, of which this sensor makes anything
+        own = {"LEFT stop, let it rest": lambda person: person.move(bench.swaying(amplitude=2e-4, period=0.1, k=3e3))}
+        own = {"Move the handle to the " + key: answer for key, answer in own.items()}
+    paddle, person = walk(store, YES | STOPPED | WIRED | own, sensor)
+    assert re.search(f"problem    .*{words}", person.words), person.words
+    assert kept(paddle).wired == 0
+
+
+def test_a_sensor_that_the_board_itself_rejects_is_named():
+    paddle = bench.paddle(store=LONGHORN.to_bytes(), sensor=LONGHORN.sensor)
+    person = bench.Scripted(paddle, YES | STOPPED | WIRED | BUILT)
+    person.answers["slowly to the RIGHT stop, within"] = lambda person: _fails_soon(paddle.exchange.port)
+    calibrate(paddle, person, date=20261121, only="wiring")
+    assert "the board rejects the reading of A on D2 and B on D3: both lines changed at once" in person.words
+    assert kept(paddle).wired == 0
+
+
+def _fails_soon(port):
+    """Let the board find a fault of its sensor 200 ticks from now, as its pins' interrupt would."""
+    tick, left = port._tick, iter(range(200))
+    port._tick = lambda: (next(left, None) is None and port.board.fail("SENSOR"), tick())
+
+
+def test_a_sensor_that_was_reversed_since_the_calibration_is_told():
+    calibrated = changed(LONGHORN, date=20261101)
+    answers = YES | WIRED | BUILT | {"By the stored calibration x increases to the left": "no"}
+    paddle, person = walk(calibrated, answers, lambda counts: -counts)
+    assert "A and B of the encoder were swapped since the calibration" in person.words
+    assert (kept(paddle).date, kept(paddle).checked, kept(paddle).wired) == (0, 0, 1)
+
+
+def test_firmware_for_another_kind_of_paddle_is_told(monkeypatch):
+    def refuses(*_):
+        raise LinkError("a value outside what the board allows", "RANGE")
+
+    monkeypatch.setattr(stored_settings, "upload", refuses)
+    with pytest.raises(PaddleError, match="drive TWO_INPUTS_ENABLE .* rejects it. Run `hapticlab flash` and choose this paddle"):
+        walk(HAPKIT, YES | WIRED | BUILT)
+
+
+class Typing(Person):
+    """A person who types these lines."""
+
+    def __init__(self, *lines):
+        self.lines, self.said = list(lines), []
+
+    def say(self, text):
+        self.said.append(text)
+
+    def ask(self, question):
+        self.said.append(question)
+        return self.lines.pop(0)
+
+
+def test_a_known_paddle_is_chosen_by_its_number():
+    person = Typing("0", "9", "3")
+    assert ask_built(person, "uno") is build("longhorn_d11")
+    assert "   3 longhorn_d11   Longhorn Hapkit with the enable on D11" in person.said[0]
+    assert person.said[1] == "[1 to 7]?" and "'0' is not one of hapkit, hapkit_as5048a" in person.said[2]
+
+
+def test_something_else_is_asked_pin_by_pin_until_the_board_can_do_it():
+    wrong = ("encoder", "D2", "d3", "enable", "D7", "a0", "D10", "7812")
+    person = Typing(
+        "7", "e", *wrong[1:3], "3", *wrong[4:7], "3", "encoder", "2", "D2", "D3", "enable", "D7", "A0", "D11", "31372"
+    )
+    found = ask_built(person, "uno")
+    assert found.wiring == Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (7, 14, 11), (2, 3), 31_372)
+    assert "EN on D10: the board has PWM on D3, D5, D6, D11. Move this wire to one of them." in person.said
+    assert any(said.startswith("'2' is not a free pin of this board; it has D2, D3") for said in person.said)
+
+
+def test_doctor_compares_what_is_built_with_what_the_board_is_told():
+    paddle = bench.paddle(store=HAPKIT.to_bytes())
+    assert doctor_checks.wiring(paddle, None).state == "ok"
+    assert doctor_checks.wiring(paddle, bench.Scripted(paddle, {"Which paddle is built": "hapkit"})).state == "ok"
+    found = doctor_checks.wiring(paddle, bench.Scripted(paddle, BUILT))
+    assert found.state == "fault"
+    assert "set to hapkit (PWM D5, DIR D8, OUT A2), but longhorn_d6 (IN1 D4, IN2 D5, EN D6, A D2, B D3) is built" in found.found
+    assert "switch the supply of the motor off" in found.cure and "calibrate --only wiring" in found.cure
+    unconfirmed = bench.paddle(store=changed(HAPKIT, wired=0, checked=0).to_bytes())
+    assert doctor_checks.wiring(unconfirmed, None).state == "attention"
+    assert doctor_checks.wiring(bench.paddle(), None).state == "skipped"
