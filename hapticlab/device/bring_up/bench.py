@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 #: in order; the limits of speed and travel are lowered once for two steps
 OFF = {
+    "calibration": motor_off.calibration,
     "link": motor_off.link,
     "sensor at rest": motor_off.sensor_at_rest,
     "sensor moved": motor_off.sensor_moved,
@@ -42,6 +43,7 @@ ON = {
     "not finite": stop_times.not_finite,
     "over-speed": limits,
     "cable": stop_times.cable,
+    "sign": forces.sign,
     "lag": forces.lag,
     "force": forces.force,
 }

@@ -1,9 +1,10 @@
-"""The last steps: how late the handle follows the motor, and what a scale shows of its force."""
+"""The last steps: the motor's sign, how late the handle follows the motor, and what a scale shows of its force."""
 
 import math
 
 from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
+from ..setup.calibrate import calibrate
 from ..setup.force_constant import on_scale
 from ..setup.person import agrees
 from .lag import fit_lag
@@ -16,6 +17,15 @@ TUGS, LASTS = 40, 0.06
 LAG_MISS = 0.5e-3
 #: parts of a force, and newtons, by which a scale may differ
 FORCE_PART, FORCE_N = 0.1, 0.05
+
+
+def sign(bench):
+    """Check the motor's sign where nobody has: after the stops, before more force."""
+    paddle = bench.paddle
+    if not paddle.settings.checked and agrees(bench.person, "Check the sign of the motor now, with 0.5 N at most?"):
+        calibrate(paddle, bench.person, only="sign")
+    checked = bool(paddle.settings.checked)
+    yield Finding.seen("sign", "motor's sign checked", checked, "yes" if checked else "no", "positive work on a passive spring")
 
 
 def lag(bench):

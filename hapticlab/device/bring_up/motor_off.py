@@ -9,6 +9,8 @@ from ...compiler.boards.cost import cost
 from ...scene.notation.symbols import n, parameters, x
 from ...scene.scene import Scene
 from ..link.messages import SENSORS
+from ..setup.calibrate import STEPS, calibrate
+from ..setup.person import agrees
 from ..setup.stored_settings import lead_home
 from .report import Finding
 
@@ -22,11 +24,23 @@ NOISY, JUMP = 6, 20
 MISS = 1 / 32
 
 
+def calibration(bench):
+    """Calibrate what needs no force, on a board that is new or whose wiring nobody confirmed."""
+    paddle, person = bench.paddle, bench.person
+    ready = paddle.settings is not None and paddle.settings.wired
+    if not ready and agrees(person, "This paddle is not calibrated. Do it now, with the supply of the motor off?"):
+        for step in STEPS[: STEPS.index("sign")]:
+            calibrate(paddle, person, only=step)
+    kept = paddle.settings
+    wired, measured = bool(kept and kept.wired), bool(kept and kept.date)
+    yield Finding.seen("calibration", "wiring confirmed", wired, "yes" if wired else "no", "a person compared the wires")
+    good = measured or paddle.exchange.lockstep  # a simulated board is what its settings say
+    yield Finding.seen("calibration", "stops measured", good, str(kept.date) if measured else "nominal", "a person measured them")
+
+
 def link(bench):
-    """Look at the settings, time requests there and back, and watch the loop with the motor off."""
-    paddle, times, kept = bench.paddle, [], bench.paddle.settings
-    for what, done in (("wiring confirmed", kept and kept.wired), ("motor's sign checked", kept and kept.checked)):
-        yield Finding.seen("link", what, bool(done), "yes" if done else "no", "run `hapticlab calibrate` before")
+    """Time requests there and back, and watch the loop with the motor off."""
+    paddle, times = bench.paddle, []
     for _ in range(PINGS):
         begun = paddle.exchange.now()
         paddle.exchange.ask("PING", secrets.randbits(32))

@@ -36,6 +36,12 @@ STEPS = {
             "Fix the mechanics first. An obstacle or a loose stop makes every later number wrong.",
         ),
         Step(
+            "calibration",
+            "If the board is new: say what is built, and measure the stops, with the supply off.",
+            "The wires on the screen are the wires on the table, and two sweeps from stop to stop agree.",
+            "Correct the wire that is named. No step that moves the motor is done before.",
+        ),
+        Step(
             "link",
             "Leave the paddle alone for a few seconds.",
             "The board answers within a few milliseconds, and its steps fit into the period.",
@@ -102,6 +108,12 @@ STEPS = {
             "Hold the handle lightly against the pull, and pull the USB cable out of the computer. Then plug it in again.",
             f"The pull ends within {HOST_SILENCE_MS} ms: you hear no later change.",
             "Switch off. If the board has no power without its cable, the resistor from the PWM pin to ground is missing.",
+        ),
+        Step(
+            "sign",
+            "If it was never checked: hold the handle lightly, and move it to one side and the other for 6 seconds.",
+            "The motor pulls the way it is told, on both sides. More than 0.5 N is allowed only after that.",
+            "Swap the sign as offered. If it pushes one way only, look at the wire of the direction pin.",
         ),
         Step(
             "lag",

@@ -153,8 +153,8 @@ class TestPartial:
         port = open_port("sim://hapkit")
         port.put_on(None, store=b"")
         with SerialPaddle("sim://hapkit", port=port) as new:
-            report = bench(new, PractisingOwner(new))
-        assert {step for step, _ in verdicts(report)} == {*ON, "link"}
+            report = bench(new, Acts(new, This_paddle_is_not_calibrated=lambda: "no"))
+        assert {step for step, _ in verdicts(report)} == {*ON, "calibration"}
         assert all("calibrate" in f.note for f in report.findings if f.verdict == "skipped")
 
 
