@@ -198,6 +198,10 @@ class Uno:
         """Cycles at which the motor's registers were written, the latest 16384, whether the duty changed or not."""
         return self._events(3)[0]
 
+    def update_duties(self):
+        """The duty after each of them."""
+        return self._events(3)[1]
+
     def _events(self, which):
         cycles, values = (ctypes.c_uint64 * LOG)(), (ctypes.c_int32 * LOG)()
         count = self._shim.uno_events(self._uno, which, cycles, values)

@@ -27,7 +27,7 @@ enum { /* addresses of the ATmega328P's registers */
     UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
 };
 enum { SPI_MODE_1 = 0x54 /* SPE, MSTR, CPHA of SPCR */, SPIF = 0x80 };
-enum { ONE_UPDATE = 100 /* cycles in which a motor's registers are written one after the other */ };
+enum { ONE_UPDATE = 400 /* cycles in which a motor's registers are written one after the other */ };
 enum { EEPE = 2, EEMPE = 4 }; /* bits of EECR */
 enum { ADEN = 0x80, ADSC = 0x40, ADPS = 7 }; /* of ADCSRA */
 

@@ -1,0 +1,249 @@
+"""Every sensor and every drive in the whole loop: the pins give the force that the program commands, or nothing at all."""
+
+import struct
+
+import numpy as np
+import pytest
+from bare import Avr
+from emulated import emulated_uno, image
+from emulator import CYCLES_PER_SECOND, EXTERNAL, WATCHDOG, Uno, missing
+from faults import FAULTS, off_from
+from wired import HAND, SPRING, WIRINGS, duties_of_ticks, expected_duty, high_pins, settings_of
+
+from hapticlab.compiler.boards.board_pins import UNO_PINS
+from hapticlab.compiler.engines.engine import load
+from hapticlab.device.board.settings import Settings, pin_word
+from hapticlab.device.link.messages import DRIVES, LOOP_SETTINGS, SENSORS
+from hapticlab.device.paddle import Paddle
+from hapticlab.device.wiring import DRIVE_ROLES, SENSOR_ROLES, Wiring, pin_problem
+from hapticlab.errors import PaddleError
+
+pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+#: of each drive one
+DRIVEN = {wiring.drive: name for name, wiring in reversed(WIRINGS.items())}
+ALWAYS = "longhorn_d11"
+
+
+def connected(name, **values):
+    return emulated_uno(HAND, settings=settings_of(WIRINGS[name], **values))
+
+
+@pytest.mark.parametrize("name", WIRINGS)
+@pytest.mark.always(ALWAYS)
+def test_the_pins_give_the_force_that_the_program_commands(name):
+    settings = settings_of(WIRINGS[name])
+    with connected(name) as paddle:
+        program = Paddle.program(paddle, SPRING)
+        log = paddle.run(program, duration=0.5)
+        board = paddle.loop.board
+        assert log.fault is None and not log.gap.any() and not log.overrun.any()
+        assert board.driver.conflicts == 0, "both inputs of the driver were high"
+        given, after = duties_of_ticks(board, len(log)), board.duty
+    outputs, _ = load(program, "interpreter").run(len(log), log.x[:, None], program.values)
+    assert np.array_equal(log.F.astype(np.float32), outputs[:, 0, 0].astype(np.float32)), "other bits than the program's"
+    assert np.ptp(log.F) > 0.5 and after == 0
+    off = np.abs(given - expected_duty(log.F, settings))
+    assert off.max() <= 1.51, "the nearest step of the duty, and one more where phase-correct PWM has 255 of them"
+
+
+@pytest.mark.parametrize("name", WIRINGS)
+@pytest.mark.always(ALWAYS)
+def test_the_carrier_is_the_one_chosen(name):
+    wiring = WIRINGS[name]
+    with connected(name) as paddle:
+        paddle.start(SPRING)
+        paddle.wait(0.03)
+        found = [carrier for pin in wiring.motor_pins if (carrier := paddle.loop.board.carrier(pin))]
+    assert found == [pytest.approx(wiring.carrier, rel=2e-3)]
+
+
+@pytest.mark.parametrize("fault", ["host silent", "over-speed", "tick stops", "brown-out", "reset"])
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.always("SHIFT_REGISTER-over-speed")
+def test_every_drive_is_off_in_time(drive, fault):
+    fault = FAULTS[fault]
+    with connected(DRIVEN[drive]) as paddle:
+        paddle.start(SPRING)
+        board = paddle.loop.board
+        paddle.wait(0.1)
+        while abs(board.duty) < 30:
+            paddle.wait(0.003)
+        begun = board.cycle
+        fault.inject(paddle)
+        last = paddle.exchange.now() + fault.within + 0.05
+        while paddle.exchange.now() < last:
+            paddle.exchange.wait(lambda: paddle.exchange.now() >= last, 0.01)
+        taken = (off_from(board, begun) - begun) / CYCLES_PER_SECOND
+        assert board.driver.conflicts == 0
+    assert 0 <= taken <= fault.within
+
+
+@pytest.mark.parametrize("name", WIRINGS)
+@pytest.mark.always("motor_shield")
+def test_nothing_is_driven_before_a_person_confirmed_the_wiring(name):
+    with connected(name, wired=0, checked=0) as paddle:
+        with pytest.raises(PaddleError, match="NOT_WIRED|confirmed the wiring"):
+            paddle.start(SPRING)
+        paddle.loop.run(0.05)
+        board, wiring = paddle.loop.board, WIRINGS[name]
+        chosen = {wiring.sensor_pins[0]} if wiring.sensor == "AS5048A" else set()
+        assert set(high_pins(board)) - {2, 3} <= chosen  # pull-ups of an encoder are no drive
+        assert set(board.duties()[1]) <= {0} and board.duty == 0
+        assert all(board.high(pin) <= 0 for pin in wiring.motor_pins)
+
+
+@pytest.mark.parametrize("name", WIRINGS)
+@pytest.mark.always("motor_shield")
+def test_a_reset_in_the_middle_takes_the_motor_off_at_once(name):
+    with connected(name) as paddle:
+        paddle.start(SPRING)
+        paddle.wait(0.1)
+        board = paddle.loop.board
+        for cause in (EXTERNAL, WATCHDOG):
+            board.reset(cause)
+            assert board.duty == 0, "a reset makes every pin an input"
+            begun = board.cycle
+            board.run_to(begun + 40)
+            low = {5, 6, 8, 11} - set(WIRINGS[name].sensor_pins)
+            assert all(board.high(pin) == 0 for pin in low), "no firm low in the first instructions"
+            board.run(0.05)
+            cycles, duties = board.duties()
+            assert not duties[cycles > begun].any() and board.driver.conflicts == 0
+
+
+def test_the_shield_holds_nothing_when_its_outputs_are_enabled():
+    """Whatever its register holds after power-on: both inputs of every motor, here."""
+    settings = settings_of(WIRINGS["motor_shield"])
+    with Uno(image(), eeprom=settings.to_bytes()) as board:
+        board.adc(500)
+        board.wire(settings.drive, WIRINGS["motor_shield"].motor_pins)
+        assert board.driver.held == 0xFF
+        board.run(0.05)
+        assert (board.high(7), board.driver.held, board.driver.conflicts) == (0, 0, 0)
+
+
+def dead_low(sensor):
+    sensor.zeros = 0xFFFF
+
+
+def dead_high(sensor):
+    sensor.ones = 0xFFFF
+
+
+def noisy(sensor):
+    sensor.flips = 0x0010
+
+
+def confused(sensor):
+    sensor.errors = 1
+
+
+def without_magnet(sensor):
+    sensor.diagnostics |= 0x0200
+
+
+@pytest.mark.parametrize("wrong", [dead_low, dead_high, noisy, confused, without_magnet])
+@pytest.mark.always("dead_low")
+def test_an_as5048a_that_cannot_be_right_is_a_fault(wrong):
+    with connected("hapkit_as5048a") as paddle:
+        paddle.start(SPRING)
+        paddle.wait(0.1)
+        board = paddle.loop.board
+        assert board.sensor.hasty == 0, "faster than its data sheet allows"
+        begun = board.cycle
+        wrong(board.sensor)
+        paddle.wait(0.02)
+        log = paddle.stop()
+        assert "SENSOR" in log.fault
+        assert (off_from(board, begun) - begun) / CYCLES_PER_SECOND <= 2.1e-3, "an answer comes a tick later"
+        board.sensor.zeros = board.sensor.ones = board.sensor.flips = 0
+        board.sensor.diagnostics = 0x0140
+        paddle.loop.run(0.02)
+        paddle.clear()
+        paddle.home(at=0.0)
+        assert paddle.run(SPRING, duration=0.05).fault is None, "it runs again, its error flag cleared"
+
+
+class Led:
+    """A handle on a path that no force changes, and a note of every angle that its sensor gave away."""
+
+    def __init__(self, sensor):
+        self.t, self.sensor, self.taken = 0.0, sensor, [(0, 0)]
+
+    def step(self, force, seconds):
+        self.t += seconds
+        return 0.002 * np.sin(50 * self.t)
+
+    def show(self, board, x):
+        if board.sensor.latched != self.taken[-1][0]:
+            self.taken.append((board.sensor.latched, board.sensor.angle))
+        self.sensor.show(board, x)
+
+
+def test_the_angle_is_of_the_tick():
+    settings = settings_of(WIRINGS["hapkit_as5048a"])
+    with connected("hapkit_as5048a") as paddle:
+        loop = paddle.loop
+        led = loop.handle = loop.sensor = Led(loop.sensor)
+        paddle.home(at=0.0)
+        home = loop.board.sensor.angle
+        paddle.run(SPRING(K=1500), duration=0.2)
+        updates, duties = loop.board.updates(), loop.board.update_duties()
+    cycles, angles = np.array(led.taken).T
+    period = np.diff(cycles[-150:-10]) / CYCLES_PER_SECOND
+    assert np.abs(period - 1e-3).max() < 8e-6, "an interrupt holds a sample off, and nothing else"
+    driven = duties != 0
+    before = np.searchsorted(cycles, updates[driven]) - 1
+    for late, allowed in ((0, True), (1, False)):
+        x = (angles[before - late] - home) * settings.metres_per_count
+        off = np.abs(duties[driven] - expected_duty(1500 * x, settings))[np.abs(x) > 1e-4]
+        assert (off.max() <= 1.6) == allowed, (late, off.max())
+
+
+def random_wiring(rng):
+    sensor, drive = rng.choice(list(SENSOR_ROLES)), rng.choice(list(DRIVE_ROLES))
+    pick = lambda good: int(rng.choice(good) if rng.random() < 0.8 else rng.integers(0, 24))  # noqa: E731
+    free, pwm = [*range(2, 20)], list(UNO_PINS.pwm)
+    motor = {
+        "PWM_DIRECTION": (pwm, free), "TWO_INPUTS": (pwm, pwm), "TWO_INPUTS_ENABLE": (free, free, pwm),
+        "SHIFT_REGISTER": (pwm, [12], [4], [8]),
+    }[drive]  # fmt: skip
+    sensors = {"MAGNETORESISTIVE": (range(14, 20),), "QUADRATURE": ([2], [3]), "AS5048A": ([10, *free],)}[sensor]
+    pins = tuple(map(pick, motor)), tuple(map(pick, map(list, sensors)))
+    return Wiring(sensor, drive, *pins, int(rng.choice(UNO_PINS.carriers)))
+
+
+def loop_bytes(settings):
+    """Return what the board keeps of settings in its memory."""
+    return settings.to_bytes()[4 : 4 + struct.calcsize("<" + "".join(type for type, *_ in LOOP_SETTINGS))]
+
+
+def test_the_board_accepts_what_the_package_does():
+    cpu, rng = Avr(image().with_suffix(".elf")), np.random.default_rng(11)
+    place, answers = cpu.place("uno_core"), []
+    for _ in range(1500):
+        wiring = random_wiring(rng)
+        cpu.write(place, loop_bytes(settings_of(wiring)))
+        accepted = cpu.call("board_accepts", place)[0]
+        assert bool(accepted) == (pin_problem(wiring, UNO_PINS) is None), wiring
+        answers.append(accepted)
+    assert 200 < sum(answers) < 1300
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"carrier": 489},
+        {"motor_pins": pin_word(5, 8, 9)},
+        {"motor_pins": pin_word(5)},
+        {"wrap": 1025},
+        {"sensor_pins": pin_word()},
+    ],
+)
+def test_the_board_rejects_what_is_no_wiring_of_its_own(values):
+    cpu = Avr(image().with_suffix(".elf"))
+    place, good = cpu.place("uno_core"), settings_of(WIRINGS["hapkit"])
+    for settings, accepted in ((good, 1), (Settings(**{**vars(good), **values}), 0)):
+        cpu.write(place, loop_bytes(settings))
+        assert cpu.call("board_accepts", place)[0] == accepted
+    assert SENSORS["MAGNETORESISTIVE"] == good.sensor
