@@ -168,10 +168,10 @@ class Led:
     """A handle on a path that no force changes, and a note of every angle that its sensor gave away."""
 
     def __init__(self, sensor):
-        self.t, self.sensor, self.taken = 0.0, sensor, [(0, 0)]
+        self.t, self.sensor, self.taken, self.moves = 0.0, sensor, [(0, 0)], False
 
     def step(self, force, seconds):
-        self.t += seconds
+        self.t += seconds * self.moves
         return 0.002 * np.sin(50 * self.t)
 
     def show(self, board, x):
@@ -185,8 +185,9 @@ def test_the_angle_is_of_the_tick():
     with connected("hapkit_as5048a") as paddle:
         loop = paddle.loop
         led = loop.handle = loop.sensor = Led(loop.sensor)
+        loop.run(0.005)
         paddle.home(at=0.0)
-        home = loop.board.sensor.angle
+        home, led.moves = loop.board.sensor.angle, True
         paddle.run(SPRING(K=1500), duration=0.2)
         updates, duties = loop.board.updates(), loop.board.update_duties()
     cycles, angles = np.array(led.taken).T
