@@ -1,10 +1,13 @@
 """What the command line does with a board: ports, doctor, flash, calibrate, bench, and a scene run on it."""
 
 import json
+import platform
 import sys
 from contextlib import nullcontext, redirect_stdout
 from functools import partial
+from pathlib import Path
 
+from .. import __version__
 from ..device.bring_up.bench import bench as first_power_up
 from ..device.bring_up.practised import PractisingOwner
 from ..device.link.serial_ports import available_ports
@@ -41,11 +44,20 @@ def doctor(parser, options):
     alone = options.no_person or options.json or _is_simulated(options.port) or not sys.stdin.isatty()
     with _words_apart(options):
         report = walk(options.port, None if alone else Person(), tell=print)
+    if options.report:
+        Path(options.report).write_text(_for_a_stranger(report), "utf-8")
     if options.json:
         print(json.dumps(report.records(), indent=1))
     else:
         print(str(report).splitlines()[-1] + ("; what needs a person at the handle was skipped" if alone else ""))
     return report.exit_code
+
+
+def _for_a_stranger(report):
+    """Return the report as JSON to send: what was found here, without the user's folder."""
+    system = {"hapticlab": __version__, "python": platform.python_version(), "platform": platform.platform(terse=True)}
+    text = json.dumps(system | {"checks": report.records()}, indent=1)
+    return text.replace(json.dumps(str(Path.home()))[1:-1], "HOME") + "\n"
 
 
 def flash(parser, options):

@@ -166,6 +166,8 @@ def _add_board_commands(commands, shared):
         if name != "ports":
             made[name].add_argument("--port", metavar="URL", help="by default the one known board that is plugged in")
     made["doctor"].add_argument("--no-person", action="store_true", help="skip the checks that need a person at the handle")
+    words = "also write what was found into this file, as JSON without names, to send with a question"
+    made["doctor"].add_argument("--report", metavar="FILE", help=words)
     words = "try what works on this computer, without a board, in two minutes, and write one file to send"
     command = {"dest": "command", "action": "store_const", "const": "self_test.report.self_test"}
     made["doctor"].add_argument("--self-test", **command, help=words)

@@ -1,6 +1,7 @@
-"""`hapticlab bench`: the report it writes, and its exit code."""
+"""`hapticlab bench` and `hapticlab doctor --report`: the reports they write, and the exit code of the bench."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -34,3 +35,15 @@ def test_a_walk_that_ends_early_is_a_partial_report_and_no_success(short, tmp_pa
     monkeypatch.setattr(PractisingOwner, "ask", interrupt)
     assert main(["bench", "--port", "sim://hapkit", "--out", str(tmp_path / "mine")]) == 130
     assert "PARTIAL: interrupted in the step 'switch'; the motor is off" in (tmp_path / "mine.md").read_text("utf-8")
+
+
+def test_a_doctor_writes_what_it_found_without_the_users_folder(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(Path, "home", lambda: Path("/home/quxley"))
+    monkeypatch.setattr("hapticlab.device.setup.computer_checks.permission_cure", lambda: "sudo cp /home/quxley/x/rules /etc")
+    monkeypatch.setattr("hapticlab.device.setup.computer_checks.UDEV", ())
+    main(["doctor", "--port", "sim://hapkit", "--report", str(tmp_path / "found.json")])
+    text = (tmp_path / "found.json").read_text("utf-8")
+    found = json.loads(text)
+    checks = {check["name"]: check["found"] for check in found["checks"]}
+    assert {"firmware", "reset", "settings", "latency"} <= set(checks) and found["hapticlab"]
+    assert "quxley" not in text

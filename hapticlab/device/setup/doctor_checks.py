@@ -67,7 +67,7 @@ def firmware(port, url, connected):
     except LinkError as problem:
         return [_other_firmware(url, problem)], None
     same = f"messages {table_hash():08x}, the same as in this package; {paddle}"
-    return [Check("firmware", "ok", same), _reset_cause(paddle.board["reset_cause"])], paddle
+    return [Check("firmware", "ok", same), _reset_cause(paddle.board["reset_cause"]), *_pending(paddle)], paddle
 
 
 def _other_firmware(url, problem):
@@ -92,6 +92,12 @@ def _reset_cause(number):
     if name in ("BROWN_OUT", "WATCHDOG"):
         return Check("reset", "attention", f"the last reset was {name}", meaning)
     return Check("reset", "ok", f"last reset: {meaning}")
+
+
+def _pending(paddle):
+    """Return a Check of a fault that stood when the doctor came, if there was one."""
+    faults = [notice for notice in paddle.notices if "fault was pending" in notice]
+    return [Check("fault", "attention", fault, "docs/faults.md has a section for each fault") for fault in faults]
 
 
 def settings(paddle):

@@ -7,6 +7,7 @@ import pytest
 import workbench as bench
 from workbench import HOMING, STOP, holding, swaying
 
+import hapticlab as hl
 from hapticlab.device.board import greeting
 from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.board.settings import nominal
@@ -100,6 +101,16 @@ class TestPorts:
 
 
 class TestFirmware:
+    def test_a_fault_that_stood_is_told(self):
+        with bench.paddle(store=KNOWN.to_bytes()) as paddle:
+            paddle.home(at=0.0)
+            paddle.start(hl.Scene(force=0 * hl.x(hl.n), name="nothing"), force_max=0.1)
+            paddle.exchange.beating = False
+            paddle.exchange.wait(lambda: False, 0.2)
+            found, _ = checks.firmware(paddle.exchange.port, "sim://hapkit", SerialPaddle)
+        assert [check.name for check in found] == ["firmware", "reset", "fault"]
+        assert "HOST_SILENT" in found[-1].found and found[-1].state == "attention"
+
     def test_a_device_that_says_nothing(self, monkeypatch):
         monkeypatch.setattr(walk, "SerialPaddle", lambda url, port: _brief(url, port))
         report = doctor("loop://")
