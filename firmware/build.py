@@ -22,7 +22,7 @@ FLAGS = (
 #: what the tick runs is made fast; a file of which it runs a few products is made small, one of which it runs nothing smaller
 FAST, SMALL, SMALLEST = ("-O2",), ("-Os",), ("-Os", "-mcall-prologues")
 SIZES = {"core/handle.c": SMALL, "boards/uno/wiring.c": SMALLEST}
-SIZES |= {f"core/{name}.c": SMALLEST for name in ("message", "place", "store", "verify")}
+SIZES |= {f"core/{name}.c": SMALLEST for name in ("heat", "message", "place", "store", "verify")}
 LINKING = ("-mrelax", "-Wl,--gc-sections")  # short calls where they reach
 BUILT = {name: board for name, board in BOARDS.items() if board.flashing}
 

@@ -104,7 +104,12 @@ typedef struct hl_core {
     volatile uint8_t heard, ran;
     uint8_t late, was_late;    /* overruns in a row; the step before was one */
     uint16_t late_second, second;
-    float heat, heat_sum, heat_gain;
+    uint16_t curve[5];         /* motor.c: duty for no force and each quarter of the full one */
+    int32_t heat;              /* of the motor, and what of it is less than one */
+    float heat_rest, heat_scale;
+    uint32_t heat_sum;         /* over heat_ticks; then in heat_taken over heat_given, until the main loop took it */
+    volatile uint32_t heat_taken;
+    volatile uint8_t heat_given;
     uint8_t heat_ticks;
     uint16_t rested;           /* ticks the handle has rested in the middle, for the standalone start */
     int32_t resting;           /* where */

@@ -113,7 +113,9 @@ static void audit(hl_core *core)
 void hl_core_poll(hl_core *core)
 {
     board_alive(core);
-    if (core->tx_count) {
+    if (core->heat_given && core->heat_given != HL_HEAT_OVER) {
+        hl_heat_follow(core);
+    } else if (core->tx_count) {
         transmit(core);
     } else if (core->rx_ready) {
         receive(core);

@@ -163,15 +163,15 @@ static void run(hl_core *core, uint16_t begin)
         return;
     }
     uint8_t flags = core->first ? HL_SAMPLE_FIRST : 0;
-    const float limit = core->force_limit;
-    float force = outputs[0].f;
-    if (force > limit || force < -limit) {
-        force = force > limit ? limit : -limit;
+    hl_slot force = outputs[0];
+    hl_slot limit;
+    limit.f = core->force_limit;
+    if ((force.i & INT32_MAX) > limit.i) { /* without its sign a float is ordered as its bits are */
+        force.i = limit.i | (force.i & INT32_MIN);
         flags |= HL_SAMPLE_SATURATED;
     }
-    core->force = force;
-    board_motor(core, hl_duty(core, -force));
-    hl_heat(core, force);
+    core->force = force.f;
+    hl_motor(core, -force.f);
     const uint8_t late = is_late(core, begin);
     if (late || skipped) {
         flags |= HL_SAMPLE_OVERRUN;
@@ -212,7 +212,7 @@ static void idle(hl_core *core)
         hl_place_idle(core); /* after a fault */
     }
     hl_handle_watch(core);
-    hl_heat(core, 0.0f);
+    hl_heat(core, 0);
     if (core->standalone && core->state == HL_STATE_IDLE) {
         await_standalone(core);
     }

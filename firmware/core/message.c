@@ -68,11 +68,10 @@ static uint8_t state_of(hl_core *core, uint8_t *to)
     const hl_timing t = core->timing;
     const uint32_t tick = core->tick;
     const int32_t counts = core->counts;
-    const float force = core->force, heat = core->heat;
+    const float force = core->force;
     const uint16_t lost = core->lost;
     const uint8_t state = core->state;
     board_unlock(core);
-    const float stands = core->settings.force_continuous * core->settings.force_continuous;
     hl_put32(to + HL_AT_STATE_SESSION, core->session);
     to[HL_AT_STATE_STATE] = state;
     to[HL_AT_STATE_FAULT] = state == HL_STATE_FAULT ? core->fault : HL_FAULT_NONE;
@@ -81,7 +80,7 @@ static uint8_t state_of(hl_core *core, uint8_t *to)
     hl_put32(to + HL_AT_STATE_COUNTS, (uint32_t)counts);
     hl_putf(to + HL_AT_STATE_X, hl_handle_position(core, counts));
     hl_putf(to + HL_AT_STATE_FORCE, state == HL_STATE_RUN ? force : 0.0f);
-    hl_putf(to + HL_AT_STATE_HEAT, heat / stands);
+    hl_putf(to + HL_AT_STATE_HEAT, (float)core->heat / (float)HL_HEAT_STANDS);
     hl_put16(to + HL_AT_STATE_PERIOD_MIN, t.period_min);
     hl_put16(to + HL_AT_STATE_PERIOD_MAX, t.period_max);
     hl_put16(to + HL_AT_STATE_STEP_LAST, t.step_last);

@@ -40,9 +40,18 @@ uint32_t hl_place_sum(const hl_place *place);
 void hl_place_idle(hl_core *core);
 void hl_stop(hl_core *core);
 
-/* motor.c */
-int16_t hl_duty(const hl_core *core, float force);
-void hl_heat(hl_core *core, float force);
+/* motor.c: parts of full force and full duty count from 0 to HL_ONE, the heat of full force to HL_FULL_HEAT */
+#define HL_ONE UINT32_C(65536)
+#define HL_FULL_HEAT (HL_ONE / 256 * HL_ONE)
+void hl_motor(hl_core *core, float force);
+void hl_heat(hl_core *core, uint16_t part);
+
+/* heat.c: what force_continuous makes of the motor in the end, and what nothing can pass; in heat_given, that it is too hot */
+#define HL_HEAT_STANDS (INT32_C(1) << 24)
+#define HL_HEAT_MOST (INT32_C(1) << 30)
+#define HL_HEAT_OVER 255
+void hl_motor_configure(hl_core *core, const float curve[4], float stood);
+void hl_heat_follow(hl_core *core);
 
 /* message.c: do what the message at `frame` asks, `count` bytes of payload and guard; write the reply's payload and its
  * number, and return how long it is */

@@ -78,7 +78,7 @@ static uint8_t why_not(const hl_core *core, const hl_place *place, uint16_t ever
     if (options & HL_OPTION_PASSIVE) {
         return HL_OK;
     }
-    if (core->heat > core->settings.force_continuous * core->settings.force_continuous) {
+    if (core->heat > HL_HEAT_STANDS) {
         return HL_RESULT_HOT;
     }
     if (!core->calibrated) {
@@ -95,7 +95,6 @@ static void set_period(hl_core *core, uint16_t us)
     core->rate = 1e6f / (float)us;
     core->silence = (uint16_t)(HL_HOST_SILENCE_MS * UINT32_C(1000) / us);
     core->second = (uint16_t)(UINT32_C(1000000) / us);
-    core->heat_gain = (float)us * 1e-6f / core->settings.heating_time;
     hl_handle_limits(core);
     board_period(core, us);
 }

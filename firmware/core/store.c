@@ -23,8 +23,9 @@ static const range ranges[] HL_FLASH = {
 };
 
 /* What relates numbers that are each within their range. */
-static int fit_together(const hl_settings *s)
+static int fit_together(const hl_record *record)
 {
+    const hl_settings *s = &record->loop;
     const float step = hl_absf(s->metres_per_count);
     if (!(step >= HL_METRES_PER_COUNT_MIN) || !(s->travel_min < s->travel_max)) {
         return 0;
@@ -33,7 +34,8 @@ static int fit_together(const hl_settings *s)
         return 0; /* sums of counts must fit 32 bits */
     }
     if (s->motor_law == HL_MOTOR_MEASURED
-        && !(s->duty_dead < s->duty_25 && s->duty_25 < s->duty_50 && s->duty_50 < s->duty_75 && s->duty_75 < 1.0f)) {
+        && !(record->duty_dead < record->duty_25 && record->duty_25 < record->duty_50 && record->duty_50 < record->duty_75
+             && record->duty_75 < 1.0f)) {
         return 0; /* the force grows with the duty */
     }
     if ((s->motor_sign != 1 && s->motor_sign != -1) || s->motor_law > HL_MOTOR_MEASURED || s->wired > 1) {
@@ -61,7 +63,7 @@ int hl_settings_valid(const hl_record *record)
             return 0;
         }
     }
-    return fit_together(&record->loop) && board_accepts(&record->loop);
+    return fit_together(record) && board_accepts(&record->loop);
 }
 
 /* Read the settings through a place whose program is not needed any more. */
@@ -71,8 +73,11 @@ void hl_settings_load(hl_core *core, hl_place *place)
     hl_settings *s = &core->settings;
     board_store_read(core, 0, (uint8_t *)record, (uint16_t)sizeof *record);
     core->calibrated = (uint8_t)hl_settings_valid(record);
+    const float stood = s->force_continuous;
+    float curve[4] = {0.0f};
     if (core->calibrated) {
         *s = record->loop;
+        memcpy(curve, (const uint8_t *)record + offsetof(hl_record, duty_dead), sizeof curve); /* with duty_25, _50 and _75 */
     } else {
         memset(s, 0, sizeof *s);
         s->metres_per_count = 1.0f; /* counts for metres: nothing can be commanded without settings */
@@ -80,10 +85,7 @@ void hl_settings_load(hl_core *core, hl_place *place)
         s->motor_sign = 1;
         s->wrap = 1024;
     }
-    core->duty_per_force = 1.0f / s->force_full;
-    /* opening the port resets many boards, which then do not know how hot the motor is: take half of what it stands */
-    const float half = 0.5f * s->force_continuous * s->force_continuous;
-    core->heat = core->heat > half ? core->heat : half;
+    hl_motor_configure(core, curve, stood);
     core->unread = 1;
     hl_place_idle(core);
     hl_handle_lose(core);

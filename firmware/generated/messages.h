@@ -6,8 +6,8 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0xc568c943UL
-#define HL_SETTINGS_HASH 0x86802d1aUL
+#define HL_PROTOCOL_HASH 0x303e0343UL
+#define HL_SETTINGS_HASH 0xb154e035UL
 #define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
 #define HL_UNCHECKED_FORCE_N 0.5f
@@ -224,10 +224,6 @@ typedef struct {
     float force_continuous; /* [N] the largest force the motor stands for ever */
     float heating_time; /* [s] time constant of the motor's heating */
     float speed_max; /* [m/s] faster than this is a fault */
-    float duty_dead; /* [1] part of full duty below which the motor gives no force */
-    float duty_25; /* [1] part of full duty for a quarter of force_full, where the law is MEASURED */
-    float duty_50; /* [1] part of full duty for half of force_full, where the law is MEASURED */
-    float duty_75; /* [1] part of full duty for three quarters of force_full, where the law is MEASURED */
     uint32_t motor_pins; /* [1] pins of the motor's driver, one a byte */
     uint32_t sensor_pins; /* [1] pins of the sensor, one a byte */
     uint32_t carrier; /* [Hz] frequency of the PWM, rounded to what the board's timer can do */
@@ -244,6 +240,10 @@ typedef struct {
 typedef struct {
     uint32_t layout; /* [1] CRC-32 of this table, so that settings of another firmware are not taken for these */
     hl_settings loop;
+    float duty_dead; /* [1] part of full duty below which the motor gives no force */
+    float duty_25; /* [1] part of full duty for a quarter of force_full, where the law is MEASURED */
+    float duty_50; /* [1] part of full duty for half of force_full, where the law is MEASURED */
+    float duty_75; /* [1] part of full duty for three quarters of force_full, where the law is MEASURED */
     uint32_t ident; /* [1] 16 bits that name this very paddle */
     uint32_t date; /* [1] of calibration, as 20261120; 0: never calibrated */
     float m; /* [kg] effective mass, for the computer's models */
@@ -274,10 +274,10 @@ typedef struct {
     X(loop.force_continuous, 1e-06f, 1000000.0f) \
     X(loop.heating_time, 1.0f, 1000000.0f) \
     X(loop.speed_max, 1e-06f, 1000000.0f) \
-    X(loop.duty_dead, 0.0f, 0.5f) \
-    X(loop.duty_25, 0.0f, 1.0f) \
-    X(loop.duty_50, 0.0f, 1.0f) \
-    X(loop.duty_75, 0.0f, 1.0f) \
+    X(duty_dead, 0.0f, 0.5f) \
+    X(duty_25, 0.0f, 1.0f) \
+    X(duty_50, 0.0f, 1.0f) \
+    X(duty_75, 0.0f, 1.0f) \
     X(m, 0.0f, 1000000.0f) \
     X(b, 0.0f, 1000000.0f) \
     X(coulomb, 0.0f, 1000000.0f) \

@@ -2,7 +2,7 @@
 
 The tick's interrupt is timed from its call to the end of its return, in ticks that nothing interrupts; the machine's own
 cycles on the same samples, counted by :mod:`bare`, are taken off. The most is the longest of these ticks, and for the
-floats of the step what awkward operands take more than its own: of duty and heat searched in the image, of position and
+floats of the step what awkward operands take more than its own: of the motor searched in the image, of position and
 velocity from the table of operations. A frame is what hl_core_poll takes to send a sample, an answer what it takes
 to answer STATUS or SET; an interrupt comes with every byte.
 """
@@ -111,24 +111,21 @@ def answer_cycles(elf, snapshots, request):
 
 
 def awkward_more(elf, snapshots):
-    """Return what duty and heat take at most with any force within 10 N, beyond their most with one of 1.234 N."""
+    """Return what the motor takes at most with any force within 10 N, beyond its most with one of 1.234 N."""
     from measure_costs import awkward_bits  # which imports this module
 
-    cpu, rng, more = Avr(elf), np.random.default_rng(3), 0
+    cpu, rng, worst = Avr(elf), np.random.default_rng(3), [0, 0]
     core = cpu.place("uno_core")
     usual = np.full((64, 1), 1.234, np.float32).view(np.uint8)
-    for name in ("hl_duty", "hl_heat"):
-        worst = [0, 0]
-        for memory in snapshots[10:-10:2]:
-            bits = awkward_bits(rng, 4000)
-            force = bits.view(np.float32)
-            awkward = bits[np.abs(np.where(np.isfinite(force), force, 99)) <= 10][:640, None].view(np.uint8)
-            for k, rows in enumerate((usual, awkward)):
-                cpu.write(RAM_BEGIN, memory)
-                worst[k] = max(worst[k], int(cpu.rows(name, (core,), REGISTER_20, rows, 24, 2)[1].max()))
-        more += max(0, worst[1] - worst[0])
-    of = tables()["uno"]["operations"]  # x = counts * metres_per_count, v = (x - x_before) * rate, |F| < limit
-    return more + sum(of[op][1] - of[op][0] for op in ("itof", "mul", "sub", "mul", "lt", "lt"))
+    for memory in snapshots[10:-10]:
+        bits = awkward_bits(rng, 2000)
+        force = bits.view(np.float32)
+        awkward = bits[np.abs(np.where(np.isfinite(force), force, 99)) <= 10][:200, None].view(np.uint8)  # heat_ticks < 255
+        for k, rows in enumerate((usual, awkward)):
+            cpu.write(RAM_BEGIN, memory)
+            worst[k] = max(worst[k], int(cpu.rows("hl_motor", (core,), REGISTER_20, rows, 24, 2)[1].max()))
+    of = tables()["uno"]["operations"]  # x = counts * metres_per_count, v = (x - x_before) * rate
+    return max(0, worst[1] - worst[0]) + sum(of[op][1] - of[op][0] for op in ("itof", "mul", "sub", "mul"))
 
 
 def latest(image, values):

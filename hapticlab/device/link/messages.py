@@ -184,10 +184,6 @@ LOOP_SETTINGS = (
     ("f", "force_continuous", "N", "the largest force the motor stands for ever"),
     ("f", "heating_time", "s", "time constant of the motor's heating"),
     ("f", "speed_max", "m/s", "faster than this is a fault"),
-    ("f", "duty_dead", "1", "part of full duty below which the motor gives no force"),
-    ("f", "duty_25", "1", "part of full duty for a quarter of force_full, where the law is MEASURED"),
-    ("f", "duty_50", "1", "part of full duty for half of force_full, where the law is MEASURED"),
-    ("f", "duty_75", "1", "part of full duty for three quarters of force_full, where the law is MEASURED"),
     ("I", "motor_pins", "1", "pins of the motor's driver, one a byte"),
     ("I", "sensor_pins", "1", "pins of the sensor, one a byte"),
     ("I", "carrier", "Hz", "frequency of the PWM, rounded to what the board's timer can do"),
@@ -199,10 +195,14 @@ LOOP_SETTINGS = (
     ("B", "motor_law", "1", "duty from force: MOTOR_LAWS"),
     ("b", "motor_sign", "1", "1, or -1 where the motor's wires are swapped"),
 )
-#: what a board keeps over power-off: of the fields behind the loop's it knows where they are, and no more
+#: what a board keeps over power-off: of the fields behind the loop's the motor's curve is read once, no others are
 SETTINGS = (
     ("I", "layout", "1", "CRC-32 of this table, so that settings of another firmware are not taken for these"),
     *LOOP_SETTINGS,
+    ("f", "duty_dead", "1", "part of full duty below which the motor gives no force"),
+    ("f", "duty_25", "1", "part of full duty for a quarter of force_full, where the law is MEASURED"),
+    ("f", "duty_50", "1", "part of full duty for half of force_full, where the law is MEASURED"),
+    ("f", "duty_75", "1", "part of full duty for three quarters of force_full, where the law is MEASURED"),
     ("I", "ident", "1", "16 bits that name this very paddle"),
     ("I", "date", "1", "of calibration, as 20261120; 0: never calibrated"),
     ("f", "m", "kg", "effective mass, for the computer's models"),
