@@ -14,16 +14,20 @@ from .identification.hand import identify_hand as hand
 from .identification.handle_records import HandleRecord, chirp_response, spin_down, step_response
 from .identification.handle_records import identify as handle
 from .identification.interval_plot import plot_intervals
+from .identification.motor_curve import MotorCurve
+from .identification.motor_curve import identify_motor as motor
 from .identification.paddle import identify_paddle as paddle
 from .identification.pushes import push_hand as pushes
 from .vocabulary import page
 
 __all__ = [
     "HandleRecord",
+    "MotorCurve",
     "chirp_response",
     "coasting",
     "hand",
     "handle",
+    "motor",
     "paddle",
     "plot_intervals",
     "pushes",
