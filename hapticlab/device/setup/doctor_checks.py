@@ -19,7 +19,7 @@ from ..wirings import built_as
 from .built import ask_built, board_with_pins
 from .flash import FLASHED, find_bootloader
 from .person import agrees
-from .sensor_readings import JUMP, LEAST_SWEEP, NOISY, REST, readings, watch
+from .sensor_readings import JUMP, LEAST_SWEEP, REST, most_at_rest, readings, watch
 from .sign_check import check_sign
 from .stored_settings import lead_home
 
@@ -191,7 +191,7 @@ def sensor_at_rest(paddle):
     counts = readings(paddle, REST).counts
     wide = float(np.ptp(counts))
     words = f"at rest {wide:.0f} counts wide, {np.std(counts):.2f} rms"
-    if wide <= NOISY:
+    if wide <= most_at_rest(paddle.settings):
         return Check("noise", "ok", words)
     cure = (
         "release the handle; if it still moves, check the supply and ground of the sensor, and keep its wires away from "

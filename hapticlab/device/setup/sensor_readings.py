@@ -7,9 +7,13 @@ import numpy as np
 from ...errors import PaddleError
 from ...scene.notation.symbols import n, parameters, x
 from ...scene.scene import Scene
+from ..link.messages import SENSORS
+from .still_noise import still_noise
 
 #: counts: at rest no more than this is noise, and no less than this is a motion
 NOISY, LEAST_SWEEP = 6, 50
+#: the same of an AS5048A, whose noise is about 2.7 counts of its 14 bits rms, from end to end of a second
+NOISY_FINE = 30
 #: counts by which a sensor may leave the straight line through its neighbours
 JUMP = 20
 #: part of the sweep at either end where a handle that hits its stop is no jump of the sensor
@@ -51,8 +55,13 @@ class Readings:
         return 0 < self.sweep <= TO_AND_FRO and np.count_nonzero(np.diff(self.counts)) >= CHANGES
 
 
+def most_at_rest(settings):
+    """Return how many counts the reading of a resting handle may wander by, from end to end; settings may be None."""
+    return NOISY_FINE if settings is not None and settings.sensor == SENSORS["AS5048A"] else NOISY
+
+
 def measure_noise(paddle, person):
-    """Return the standard deviation of a resting handle's reading [m], and what was found, in lines.
+    """Return the standard deviation of the sensor's noise [m], without its counting, and what was found, in lines.
 
     Raises
     ------
@@ -61,13 +70,16 @@ def measure_noise(paddle, person):
     """
     person.ask("Let the handle rest, do not touch it, and press Enter. The motor is off.")
     rest = readings(paddle, REST)
-    if rest.sweep > NOISY:
+    most = most_at_rest(paddle.settings)
+    if rest.sweep > most:
         raise PaddleError(
-            f"sensor: at rest the reading wanders by {rest.sweep:.0f} counts; needs {NOISY} at most. Let the handle rest against "
+            f"sensor: at rest the reading wanders by {rest.sweep:.0f} counts; needs {most} at most. Let the handle rest against "
             "a stop. If it wanders again, check the supply of the sensor, and keep its wires away from those of the motor."
         )
-    noise = float(np.std(rest.counts)) * abs(paddle.settings.metres_per_count)
-    return noise, [f"measured   at rest {rest.sweep:.0f} counts wide, {noise * 1e6:.3g} um rms"]
+    found, step = still_noise(np.round(rest.counts)), abs(paddle.settings.metres_per_count) * 1e6
+    between = f"between {found.low * step:.3g} and {found.high * step:.3g}"
+    words = f"measured   at rest {rest.sweep:.0f} counts wide; noise {found.value * step:.3g} um rms, {between}"
+    return found.value * step * 1e-6, [words]
 
 
 def watch(paddle, seconds):

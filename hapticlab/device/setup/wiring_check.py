@@ -11,7 +11,7 @@ from ..board.settings import changed, nominal
 from ..wiring import Wiring
 from ..wirings import built_as
 from .built import ask_built, board_with_pins, show
-from .sensor_readings import JUMP, LEAST_SWEEP, NOISY, REST, readings
+from .sensor_readings import JUMP, LEAST_SWEEP, REST, most_at_rest, readings
 from .stored_settings import offer, store
 
 #: until the stops are measured: counts after which a reading repeats, and metres per count of a Hapkit's pulley and sector.
@@ -83,9 +83,10 @@ def check_sensor(paddle, person):
     person.ask("Move the handle to the LEFT stop, let it rest there, and press Enter. The motor is off.")
     rest = readings(paddle, REST)
     problem = _fault(rest, wiring, at)
-    if not problem and rest.sweep > NOISY:
+    most = most_at_rest(paddle.settings)
+    if not problem and rest.sweep > most:
         problem = (
-            f"at rest the reading wanders by {rest.sweep:.0f} counts; a sensor has {NOISY} at most. {_lines(wiring, at)} may "
+            f"at rest the reading wanders by {rest.sweep:.0f} counts; this sensor has {most} at most. {_lines(wiring, at)} may "
             "have no contact, or lies beside the wires of the motor"
         )
     if problem:

@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 
+from workbench import Scripted, paddle
+
+from hapticlab.device.setup.sensor_readings import measure_noise
 from hapticlab.device.setup.still_noise import LEAST_SAMPLES, still_noise
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import PaddleError
 
 
@@ -30,6 +34,16 @@ def test_a_reading_that_never_changes_tells_a_bound_only():
     assert still.value == still.low == 0.0 and 0.1 < still.high < 0.3
     shifted = still_noise(np.r_[np.full(990, -5.0), np.full(10, -4.0)])
     assert shifted.low == 0.0 < shifted.value < 0.3
+
+
+def test_calibration_finds_the_noise_of_a_board_at_rest():
+    """5 um of noise behind counts of 12.9 um: the counts' own deviation is another, by where the handle rests."""
+    board = paddle(mechanics=SimulatedPaddle(m=0.03, b=0.1, T=1e-3, noise=5e-6, seed=2), store=None)
+    found, words = measure_noise(board, Scripted(board, {"Let the handle rest": ""}))
+    assert found == pytest.approx(5e-6, rel=0.15) and "um rms, between" in words[0]
+    wild = paddle(mechanics=SimulatedPaddle(m=0.03, b=0.1, T=1e-3, noise=4e-5), store=None)
+    with pytest.raises(PaddleError, match="at rest the reading wanders by .* counts; needs 6 at most"):
+        measure_noise(wild, Scripted(wild, {"Let the handle rest": ""}))
 
 
 def test_what_tells_nothing_is_refused():
