@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from workbench import Scripted, paddle
 
 from hapticlab.device.setup.sensor_readings import measure_noise
