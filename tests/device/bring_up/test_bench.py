@@ -1,6 +1,7 @@
 """The walk through a first power-up: on simulated boards, sound and faulty, and on the emulated Uno."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 from emulated import emulated_uno
@@ -16,6 +17,7 @@ from hapticlab.device.bring_up.report import Finding
 from hapticlab.device.bring_up.steps import STEPS
 from hapticlab.device.link.messages import STATES
 from hapticlab.device.link.serial_ports import open_port
+from hapticlab.device.setup import sign_check
 from hapticlab.device.setup.calibrate import calibrate
 
 STOPS = [("host silent", 0.1), ("not finite", 0.0), ("over-speed", 0.0), ("over-travel", 0.0)]
@@ -77,6 +79,19 @@ class TestWhole:
         report = bench(board, PractisingOwner(board))
         assert verdicts(report) == {}, str(report)
         assert report["force", "force for 1.8 N"].found == pytest.approx(1.8, abs=0.02)
+
+    @pytest.mark.wide
+    def test_a_new_board_is_calibrated_stopped_and_only_then_given_more_force(self, monkeypatch):
+        monkeypatch.setattr(sign_check, "secrets", SimpleNamespace(randbits=lambda _: 1))  # sessions still draw their own
+        port = open_port("sim://hapkit")
+        port.put_on(None, store=b"")
+        checked = {}
+        with SerialPaddle("sim://hapkit", port=port) as new:
+            owner = PractisingOwner(new)
+            report = bench(new, owner, tell=lambda found: checked.setdefault(found.step, owner.board.settings.checked))
+        assert verdicts(report) == {}, str(report)
+        assert checked["cable"] == 0 and checked["lag"] == 1  # 0.5 N at most until every stop was tried
+        assert report["calibration", "stops measured"].found != "nominal"
 
     @pytest.mark.wide
     @pytest.mark.skipif(missing() is not None, reason=str(missing()))
