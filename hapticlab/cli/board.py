@@ -20,6 +20,7 @@ from ..device.setup.doctor import doctor as walk
 from ..device.setup.flash import flash as write_firmware
 from ..device.setup.person import Person, agrees
 from ..device.setup.practice import practice_board
+from ..device.setup.uf2 import COPIED, copy_firmware
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
 from .exits import INTERRUPTED
@@ -76,9 +77,13 @@ def _for_a_stranger(report):
 
 def flash(parser, options):
     """Write the firmware into a board."""
+    tell = partial(print, file=sys.stderr)
+    if options.board in COPIED:
+        print(copy_firmware(options.image, options.board, tell=tell))
+        return 0
     port = options.port or _only_port()
-    before_flash(port, options.board, _who(options), tell=partial(print, file=sys.stderr))
-    print(write_firmware(port, options.image, options.board, tell=partial(print, file=sys.stderr)))
+    before_flash(port, options.board, _who(options), tell=tell)
+    print(write_firmware(port, options.image, options.board, tell=tell))
     return 0
 
 

@@ -157,7 +157,7 @@ def _add_board_commands(commands, shared):
     words = {
         "ports": "list the serial ports, and which of them connect() asks",
         "doctor": "walk from the cable to the motor and say what is wrong",
-        "flash": "write the firmware into a board, such as an Arduino Uno, over its bootloader",
+        "flash": "write the firmware into a board, such as an Arduino Uno or a Raspberry Pi Pico",
         "calibrate": "confirm the wiring, measure stops, sensor, motor sign and force, and store them on the board",
         "bench": "try a paddle step by step, motor off first, and write one report of what was predicted and found",
     }
@@ -175,7 +175,7 @@ def _add_board_commands(commands, shared):
     words = "where the self-test writes what it found (default: %(default)s)"
     made["doctor"].add_argument("--out", metavar="FILE", default="hapticlab-self-test.json", help=words)
     made["flash"].add_argument("--board", metavar="NAME", default="uno", help="which board it is (default: %(default)s)")
-    made["flash"].add_argument("--image", metavar="FILE.hex", help="by default the one that came with hapticlab")
+    made["flash"].add_argument("--image", metavar="FILE", help="by default the one that came with hapticlab")
     made["flash"].add_argument("--yes", action="store_true", help="do not ask which paddle is built")
     words = "rehearse it on a simulated board with one thing wrong: " + ", ".join(TROUBLES)
     practice = {"nargs": "?", "const": TROUBLES[0], "choices": TROUBLES, "metavar": "TROUBLE"}

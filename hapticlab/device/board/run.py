@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.missed_events import warn_of_missed
 from ...base.telemetry import Telemetry
+from ...compiler.boards.board_records import BOARDS
 from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
 from ...errors import PaddleError
@@ -121,8 +122,8 @@ class Run:
         return {"t": tick * self.program.T, **found, "saturated": flags["saturated"], "gap": missing, "overrun": flags["overrun"]}
 
 
-def decimation(program, port, every=None):
-    """Return the ticks from one sample to the next: as asked, or as few as the link carries.
+def decimation(program, port, every=None, board=None):
+    """Return the ticks from one sample to the next: as asked, or as few as the link to a board of this name carries.
 
     Raises
     ------
@@ -130,7 +131,8 @@ def decimation(program, port, every=None):
         If it carries fewer than asked.
     """
     channels = 2 + len(program.outputs)
-    rate = getattr(port, "bytes_per_second", port.baudrate / 10)
+    own = BOARDS[board].link if board in BOARDS else None
+    rate = own or getattr(port, "bytes_per_second", port.baudrate / 10)
     least = max(1, math.ceil((SAMPLE_OVERHEAD + 4 * channels) / program.T / (SAMPLES_SHARE * rate) - 1e-9))
     if every is None:
         return least
