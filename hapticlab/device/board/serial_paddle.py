@@ -402,11 +402,8 @@ class SerialPaddle(Paddle):
                 self._loaded = load(self.exchange, program, self.board["word_bytes"])
                 for some in in_portions(named_values(program)):
                     send(self.exchange, program, some)
-            run = Run(
-                self._loaded,
-                decimation(self._loaded.program, self.exchange.port, every, self.board["board"]),
-                self.exchange.absent,
-            )
+            sent = decimation(self._loaded.program, self.exchange.port, every, self.board["board"])
+            run = Run(self._loaded, sent, self.exchange.absent)
             self._listen(run)
             self.exchange.beating = True
             self.exchange.command("START", self._loaded.crc, run.every, options, force_max, then=run.begin)
