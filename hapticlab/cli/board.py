@@ -17,10 +17,10 @@ from ..device.setup.before_flash import before_flash
 from ..device.setup.calibrate import calibrate as calibrate_paddle
 from ..device.setup.connect import connect
 from ..device.setup.doctor import doctor as walk
+from ..device.setup.drive.copy_firmware import COPIED, copy_firmware
 from ..device.setup.flash import flash as write_firmware
 from ..device.setup.person import Person, agrees
 from ..device.setup.practice import practice_board
-from ..device.setup.uf2 import COPIED, copy_firmware
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
 from .exits import INTERRUPTED

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hapticlab.device.setup.uf2_blocks import parse_uf2
+from hapticlab.device.setup.drive.uf2_blocks import parse_uf2
 
 CYCLES_PER_SECOND = 125_000_000
 POWER, RUN_PIN = "power", "run"

@@ -15,7 +15,7 @@ from pico_emulator import FIRST_ADC_PIN, Pico
 from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.board.settings import nominal, pin_word, pins_of
 from hapticlab.device.link.messages import DRIVES, MOTOR_LAWS, SENSORS
-from hapticlab.device.setup.uf2_blocks import parse_uf2
+from hapticlab.device.setup.drive.uf2_blocks import parse_uf2
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 
 BOARDS, HANDLERS = {}, "ports"

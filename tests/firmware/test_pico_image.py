@@ -11,7 +11,7 @@ import hapticlab as hl
 from hapticlab.compiler.boards.board_records import BOARDS
 from hapticlab.compiler.engines.engine import load
 from hapticlab.device.paddle import Paddle
-from hapticlab.device.setup.uf2_blocks import parse_uf2
+from hapticlab.device.setup.drive.uf2_blocks import parse_uf2
 
 needs_emulator = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 HOW = BOARDS["pico"].flashing

@@ -10,11 +10,11 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...compiler.boards.board_records import BOARDS, Drive
-from ...errors import PaddleError, PortError
-from ..link.serial_ports import available_ports
-from ..progress import progress_bar
-from .flash import prebuilt_image
+from ....compiler.boards.board_records import BOARDS, Drive
+from ....errors import PaddleError, PortError
+from ...link.serial_ports import available_ports
+from ...progress import progress_bar
+from ..flash import prebuilt_image
 from .uf2_blocks import parse_uf2
 
 #: board -> how firmware is copied to it

@@ -7,9 +7,9 @@ import pytest
 
 from hapticlab.cli.main import main
 from hapticlab.device.link.serial_ports import Port
-from hapticlab.device.setup import uf2 as module
-from hapticlab.device.setup.uf2 import COPIED, INFO, copy_firmware
-from hapticlab.device.setup.uf2_blocks import HEAD, as_uf2, parse_uf2
+from hapticlab.device.setup.drive import copy_firmware as module
+from hapticlab.device.setup.drive.copy_firmware import COPIED, INFO, copy_firmware
+from hapticlab.device.setup.drive.uf2_blocks import HEAD, as_uf2, parse_uf2
 from hapticlab.errors import PaddleError, PortError
 
 HOW = COPIED["pico"]

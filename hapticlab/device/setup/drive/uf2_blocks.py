@@ -6,7 +6,7 @@ blocks, family of the chip, 476 bytes of which 256 are used, a third magic numbe
 
 import struct
 
-from ...errors import PaddleError
+from ....errors import PaddleError
 
 BLOCK, PAGE = 512, 256
 BEGIN, END = (0x0A324655, 0x9E5D5157), 0x0AB16F30
