@@ -57,10 +57,12 @@ class Run:
         Ticks from one sample to the next.
     absent : callable
         Gives for how long this program did not run [s]; asked when the board reports a fault.
+    sensor_delay : float
+        Lag of the board's sensor [s].
     """
 
-    def __init__(self, loaded, every, absent=lambda: 0.0):
-        self._absent = absent
+    def __init__(self, loaded, every, absent=lambda: 0.0, sensor_delay=0.0):
+        self._absent, self.sensor_delay = absent, sensor_delay
         self.loaded, self.program, self.every = loaded, loaded.program, every
         self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
         self._rows, self._taken = deque(), -every
@@ -107,6 +109,7 @@ class Run:
             **own, T=program.T * self.every, delay=delay, channels={c.name: columns[c.name] for c in program.outputs[1:]},
             units=program.units, paddle=paddle, scene=program.name, parameters=values,
             fault=fault_words(self.fault, program.T), every=self.every, changes=tuple(changes),
+            sensor_delay=self.sensor_delay,
         )  # fmt: skip
 
     def _table(self, rows):

@@ -403,7 +403,7 @@ class SerialPaddle(Paddle):
                 for some in in_portions(named_values(program)):
                     send(self.exchange, program, some)
             sent = decimation(self._loaded.program, self.exchange.port, every, self.board["board"])
-            run = Run(self._loaded, sent, self.exchange.absent)
+            run = Run(self._loaded, sent, self.exchange.absent, self.device.sensor_delay)
             self._listen(run)
             self.exchange.beating = True
             self.exchange.command("START", self._loaded.crc, run.every, options, force_max, then=run.begin)
