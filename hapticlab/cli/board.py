@@ -10,6 +10,7 @@ from pathlib import Path
 
 from .. import __version__
 from ..course.drawings.wiring_files import wiring_svg
+from ..device.bring_up.about import settings_of
 from ..device.bring_up.bench import bench as first_power_up
 from ..device.bring_up.practised import PractisingOwner
 from ..device.link.serial_ports import available_ports
@@ -21,6 +22,7 @@ from ..device.setup.drive.copy_firmware import COPIED, copy_firmware
 from ..device.setup.flash import flash as write_firmware
 from ..device.setup.person import Person, agrees
 from ..device.setup.practice import practice_board
+from ..device.setup.stored_settings import offer
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
 from .exits import INTERRUPTED
@@ -109,6 +111,10 @@ def calibrate(parser, options):
 def bench(parser, options):
     """Walk an owner through the first power-up and write one report; 0 only if it is whole and all came as predicted."""
     person, simulated = Person(), _is_simulated(options.port)
+    if options.restore:
+        kept = settings_of(options.restore)
+        with connect(options.port) as paddle:
+            return int(not offer(paddle, person, kept, [str(kept)]))
     _agree(options, person, "The motor will pull the handle by 0.4 N, and by up to 2 N in a last step that asks again.")
     with connect(options.port) as paddle:
         _tell_notices(paddle)

@@ -185,6 +185,8 @@ def _add_board_commands(commands, shared):
         made[name].add_argument("--yes", action="store_true", help="do not ask before the motor moves")
     words = "write FILE.md, to read, and FILE.json, as data (default: %(default)s)"
     made["bench"].add_argument("--out", metavar="FILE", default="hapticlab-bench", help=words)
+    words = "try nothing, but store the settings that this report has, if you agree"
+    made["bench"].add_argument("--restore", metavar="FILE.json", help=words)
 
 
 def _whole(least, what):

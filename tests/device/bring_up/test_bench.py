@@ -11,6 +11,7 @@ import hapticlab as hl
 from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.bring_up import bench as walk
 from hapticlab.device.bring_up import limits, motor_off, steps, stop_times
+from hapticlab.device.bring_up.about import settings_of
 from hapticlab.device.bring_up.bench import OFF, ON, bench
 from hapticlab.device.bring_up.practised import PractisingOwner
 from hapticlab.device.bring_up.report import Finding
@@ -155,12 +156,15 @@ class TestPartial:
         assert report.ended.startswith("interrupted in the step 'over-speed'") and "still stores" not in report.ended
         assert paddle.settings == kept
 
-    def test_a_link_that_fails_while_limits_are_lowered_is_told(self, paddle, monkeypatch):
+    def test_a_link_that_fails_while_limits_are_lowered_is_told(self, paddle, monkeypatch, tmp_path):
         only(monkeypatch, "over-speed")
+        kept = paddle.settings
         owner = Acts(paddle, flick=lambda: paddle.exchange.port.close())
         report = bench(paddle, owner)
-        assert "the motor is off" in report.ended and "still stores the lower limits" in report.ended
-        assert "speed_max         2 " in report.page()  # what to store again
+        assert "does not answer, and stops its motor 100 ms after" in report.ended
+        assert "still stores the lower limits" in report.ended and "the motor is off" not in report.ended
+        _, data = report.save(tmp_path / "partial")
+        assert settings_of(data) == kept  # what --restore stores
 
     def test_a_board_without_settings_is_watched_only(self, monkeypatch):
         monkeypatch.setattr(motor_off, "LOOP", 0.1)
