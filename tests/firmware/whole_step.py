@@ -14,7 +14,7 @@ import numpy as np
 from bare import Avr, Bench
 from build_image import build
 from closed_loop import ClosedLoop, PaddleHandle
-from emulator import RAM_BEGIN, TIMER1_COMPA, USART_RX, USART_UDRE, Uno
+from emulator import INT0, INT1, RAM_BEGIN, TIMER1_COMPA, USART_RX, USART_UDRE, Uno
 from five_scenes import compiled, mass_and_wall, wall
 from uno_port import offer
 
@@ -29,6 +29,7 @@ RARELY = 17  # ticks a sample, coprime with the 16 of the heat: a tick of both i
 SOONEST = 16 * 8  # cycles before its end in which a step has to set the next tick, main.c
 LATE_T = 0.807e-3  # [s], no multiple of the 50 us in which the host looks
 EDGE = 95  # cycles of an encoder's interrupt at most
+OTHERS = USART_UDRE, USART_RX, INT0, INT1  # interrupts that may come into a tick
 REGISTER_20 = 20  # where the first four bytes after a pointer are given to a function
 
 
@@ -43,7 +44,7 @@ class Watched(PaddleHandle):
         if self.board is not None:
             count, mean, _ = self.board.cost(TIMER1_COMPA)
             if count == self.last[0] + 1:
-                before, self.bytes = self.bytes, sum(self.board.cost(v)[0] for v in (USART_UDRE, USART_RX))
+                before, self.bytes = self.bytes, sum(self.board.cost(v)[0] for v in OTHERS)
                 self.ticks.append((round(count * mean - self.last[1]), self.bytes == before))
                 if len(self.ticks) % 5 == 0:
                     self.snapshots.append(self.board.memory[RAM_BEGIN:].tobytes())

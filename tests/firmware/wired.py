@@ -8,35 +8,37 @@ from hapticlab.compiler.boards.board_pins import UNO_PINS
 from hapticlab.device.board.settings import changed, nominal
 from hapticlab.device.link.messages import MOTOR_LAWS
 from hapticlab.device.wiring import Wiring
-from hapticlab.device.wirings import BUILDS
 
 HAND = hl.Hand(m=0.05, b=3, k=400, intent=lambda t: 0.008 * np.sin(11 * t) + 0.002 * np.sin(31 * t))
+CALIBRATED = {"wired": 1, "checked": 1, "ident": 7, "date": 20261120}
 #: counts until an angle sensor repeats, and handle travel of a count [m]: a full turn of an AS5048A is two of a KMA210
 STEPS = {"MAGNETORESISTIVE": (920, 12.8e-6), "AS5048A": (16384, 2 * 920 * 12.8e-6 / 16384), "QUADRATURE": (1024, 2e-5)}
-#: the paddles that people have, and drives and motors that none of them has
-WIRINGS = {name: one.wiring for name, one in BUILDS.items() if one.board == "uno"} | {
-    "two inputs": Wiring("QUADRATURE", "TWO_INPUTS", (5, 6), (2, 3), 62_500),
-    "two inputs, timer 2": Wiring("MAGNETORESISTIVE", "TWO_INPUTS", (11, 3), (19,), 31_372),
-    "shield, M3": Wiring("MAGNETORESISTIVE", "SHIFT_REGISTER", (6, 12, 4, 8), (14,), 976),
-    "two inputs, both timers, AS5048A": Wiring("AS5048A", "TWO_INPUTS_ENABLE", (17, 18, 3), (9,), 3_921),
+
+
+def of(*wiring):
+    """Return the settings of a calibrated paddle with a wiring: a linear motor of 8 N with a dead band."""
+    wiring = Wiring(*wiring)
+    wrap, step = STEPS[wiring.sensor]
+    values = {"wrap": wrap, "metres_per_count": step, "duty_dead": 0.08, "motor_law": MOTOR_LAWS["LINEAR"], "speed_max": 0.6}
+    return changed(nominal("hapkit"), **{**wiring.settings(), **values, **CALIBRATED})
+
+
+#: the paddles that people have, and drives, motors and pins that none of them has
+PADDLES = {name: nominal(name, **CALIBRATED) for name in ("hapkit", "hapkit_as5048a", "longhorn", "motor_shield")} | {
+    "l298": of("QUADRATURE", "TWO_INPUTS_ENABLE", (7, 8, 6), (2, 3), 7_812),
+    "two inputs": of("QUADRATURE", "TWO_INPUTS", (5, 6), (2, 3), 62_500),
+    "two inputs, timer 2": of("MAGNETORESISTIVE", "TWO_INPUTS", (11, 3), (19,), 31_372),
+    "shield, M3": of("MAGNETORESISTIVE", "SHIFT_REGISTER", (6, 12, 4, 8), (14,), 976),
+    "analog pins as inputs": of("AS5048A", "TWO_INPUTS_ENABLE", (17, 18, 3), (9,), 3_921),
 }
 K = hl.parameters("K", units="N/m")
 SPRING = hl.Scene(force=K * x(n), name="spring")(K=60)
 
 
-def settings_of(wiring, **values):
-    """Return the settings of a calibrated paddle with a wiring: a linear motor of 8 N with a dead band."""
-    wrap, step = STEPS[wiring.sensor]
-    known = {
-        "wired": 1, "checked": 1, "ident": 7, "date": 20261120, "wrap": wrap, "metres_per_count": step, "duty_dead": 0.08,
-        "motor_law": MOTOR_LAWS["LINEAR"], "speed_max": 0.6,
-    }  # fmt: skip
-    return changed(nominal("hapkit"), **{**wiring.settings(), **known, **values})
-
-
 def expected_duty(F, settings):
     """Return the signed duty in 256ths for a force on the environment, the motor's opposite, by the law in floats."""
     part = np.minimum(np.abs(F) / settings.force_full, 1)
+    part = np.sqrt(part) if settings.motor_law == MOTOR_LAWS["SQRT"] else part
     duty = np.where(part > 0, settings.duty_dead + (1 - settings.duty_dead) * part, 0)
     return -256 * np.sign(F) * duty
 

@@ -225,7 +225,7 @@ _NOMINAL = {
     },
     "motor_shield": {
         "force_continuous": 1.0, "sensor": SENSORS["QUADRATURE"], "drive": DRIVES["SHIFT_REGISTER"],
-        "motor_pins": pin_word(11, 12, 4, 8),
+        "motor_pins": pin_word(11, 12, 4, 8), "speed_max": 0.5,  # 41 000 edges a second, of which an Uno counts 82 000
     },
 }  # fmt: skip
 #: of a profile and of settings, by the same name
