@@ -10,7 +10,8 @@ from hapticlab.compiler.engines import engine, firmware_library
 package = pathlib.Path(hapticlab.__file__).parent
 assert "site-packages" in str(package), package
 assert list((package / "firmware").rglob("*.c")), "no firmware in the wheel"
-assert (package / "firmware" / "prebuilt" / "uno.hex").is_file(), "no image for the Uno in the wheel"
+for image in ("uno.hex", "pico.uf2"):
+    assert (package / "firmware" / "prebuilt" / image).is_file(), f"no {image} in the wheel"
 assert (package / "examples" / "mass_on_coupler.py").is_file()
 assert not (package.parent / "tests").exists(), "the wheel holds tests"
 assert len(list((package / "labs").glob("[0-9][0-9]_*/[0-9][0-9]_*.ipynb"))) == 11, "labs are missing in the wheel"

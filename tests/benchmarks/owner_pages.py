@@ -15,6 +15,7 @@ from hapticlab.device.board.settings import nominal
 from hapticlab.device.bring_up.steps import table
 from hapticlab.device.link.messages import FAULTS, UNCHECKED_FORCE_N
 from hapticlab.device.profiles import PROFILES
+from hapticlab.device.wirings import BUILDS
 from hapticlab.errors import PaddleError
 
 CLOCKS_PER_US = 16  # of an Uno
@@ -77,24 +78,28 @@ def stop_rows():
 
 
 def scope_rows():
-    """Watch the pins of the emulated Uno in a pull, and return what an oscilloscope would show."""
+    """Watch the motor's pins of the emulated Uno for each paddle that people build, and return what a scope would show."""
     sys.path.insert(0, str(ROOT / "tests" / "firmware"))
-    import faults
+    import wired
     from emulated import emulated_uno
 
-    with emulated_uno(faults.HAND) as paddle:
-        paddle.start(faults.ALWAYS)
-        paddle.wait(1.0)
-        board = paddle.loop.board
-        samples, updates = board.samples()[-501:-1], board.updates()
-        delays = np.array([updates[np.searchsorted(updates, at)] - at for at in samples]) / CLOCKS_PER_US
-        periods = np.diff(samples) / CLOCKS_PER_US
-        paddle.stop()
-    rows = ["| between | typical | in 500 samples |", "| --- | --- | --- |"]
-    rows.append(f"| two samples of A2 | {np.median(periods):.1f} us | {periods.min():.1f} to {periods.max():.1f} us |")
-    rows.append(
-        f"| a sample of A2 and the new duty on D5 | {np.median(delays):.0f} us | {delays.min():.0f} to {delays.max():.0f} us |"
-    )
+    rows = ["| wiring | carrier, on | a new duty every | step, mean and worst |", "| --- | --- | --- | --- |"]
+    for name, build in BUILDS.items():
+        if build.board != "uno":
+            continue
+        wiring = build.wiring
+        with emulated_uno(wired.HAND, settings=wired.settings_of(wiring)) as paddle:
+            paddle.start(wired.SPRING)
+            paddle.wait(0.5)
+            board = paddle.loop.board
+            carriers = {pin: board.carrier(pin) for pin in wiring.motor_pins if board.carrier(pin)}
+            every = np.diff(board.updates()[-400:]) / CLOCKS_PER_US
+            paddle.stop()
+        (pin, hz), timing = next(iter(carriers.items())), paddle.timing
+        rows.append(
+            f"| `{name}` | {hz / 1e3:.2f} kHz, {build.pins.name(pin)} | {np.median(every):.0f} us, {every.min():.0f} to "
+            f"{every.max():.0f} | {1e6 * timing.mean:.0f} us, {1e6 * timing.worst:.0f} us |"
+        )
     return "\n".join(rows) + "\n"
 
 

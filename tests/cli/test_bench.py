@@ -37,6 +37,19 @@ def test_a_walk_that_ends_early_is_a_partial_report_and_no_success(short, tmp_pa
     assert "PARTIAL: interrupted in the step 'switch'; the motor is off" in (tmp_path / "mine.md").read_text("utf-8")
 
 
+def test_settings_of_a_report_are_stored_again(short, tmp_path, monkeypatch, capsys):
+    main(["bench", "--port", "sim://hapkit", "--out", str(tmp_path / "mine")])
+    facts = json.loads((tmp_path / "mine.json").read_text("utf-8"))
+    monkeypatch.setattr("builtins.input", lambda question: "yes")
+    restore = ["bench", "--port", "sim://hapkit", "--restore", str(tmp_path / "mine.json")]
+    assert main(restore) == 0
+    assert "found equal in every bit" in capsys.readouterr().out
+    for spoilt in ({"about": {"settings_hex": "00" + facts["about"]["settings_hex"][2:]}}, {"about": {"settings_hex": "00"}}, []):
+        (tmp_path / "mine.json").write_text(json.dumps(spoilt), "utf-8")
+        assert main(restore) == 1
+    assert "another layout" in (said := capsys.readouterr().err) and "holds no settings" in said
+
+
 def test_a_doctor_writes_what_it_found_without_the_users_folder(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(Path, "home", lambda: Path("/home/quxley"))
     monkeypatch.setattr("hapticlab.device.setup.computer_checks.permission_cure", lambda: "sudo cp /home/quxley/x/rules /etc")

@@ -21,6 +21,8 @@ from hapticlab.cli.scene_file import load_scene
 from hapticlab.device.board.settings import nominal
 from hapticlab.device.link.serial_ports import Port
 from hapticlab.device.setup.calibrate import STEPS
+from hapticlab.device.setup.practice import TROUBLES
+from hapticlab.device.wirings import build
 
 pytestmark = pytest.mark.interpreter
 
@@ -551,21 +553,36 @@ def test_flash_takes_the_only_board_or_the_one_named(monkeypatch, capsys):
         written.append((port, image, board))
         return "written"
 
+    asked = []
+    monkeypatch.setattr(board_command, "before_flash", lambda *given, tell: asked.append(given))
     monkeypatch.setattr(board_command, "write_firmware", writes)
     assert main.main(["flash"]) == 0
     assert main.main(["flash", "--board", "mill", "--port", "COM9", "--image", "own.hex"]) == 0
     assert written == [("COM3", None, "uno"), ("COM9", "own.hex", "mill")]
+    assert asked == [("COM3", "uno", None), ("COM9", "mill", None)]  # nobody is at this terminal
     assert capsys.readouterr() == ("written\nwritten\n", "COM3\nCOM9\n")
     found.append(Port("COM4", known="Arduino Uno R3"))
     assert main.main(["flash"]) == 1
     assert "known boards: COM3, COM4; say which" in capsys.readouterr().err
 
 
+def test_calibrate_is_rehearsed_without_a_board(capsys):
+    assert main.main(["calibrate", "--practice", "loose wire", "--only", "wiring"]) == 0
+    told = capsys.readouterr().out
+    assert "only one line of the encoder arrives. Check A on D2 and B on D3" in told and "Confirmed." in told
+
+
+def test_the_drawing_of_a_wiring_is_a_file_for_a_person_at_a_terminal(tmp_path, monkeypatch):
+    monkeypatch.setattr(board_command.tempfile, "gettempdir", lambda: str(tmp_path))
+    where = board_command.PersonWithPictures().picture(build("l298"))
+    assert "ENA" in Path(where).read_text("utf-8") and Path(where).parent == tmp_path
+
+
 def test_calibrate_stores_what_the_person_agreed_to(monkeypatch, capsys):
     paddle = workbench.paddle(store=nominal("hapkit", ident=9).to_bytes())
     person = workbench.Scripted(paddle, workbench.STOPS | {"Store these settings": "yes", "Go on?": "yes"})
     monkeypatch.setattr(board_command, "connect", lambda port: paddle)
-    monkeypatch.setattr(board_command, "Person", lambda: person)
+    monkeypatch.setattr(board_command, "PersonWithPictures", lambda: person)
     monkeypatch.setattr(sys, "stdin", type("Terminal", (), {"isatty": staticmethod(lambda: True)})())
     assert main.main(["calibrate", "--only", "stops"]) == 0
     assert paddle.settings.date >= 20261121
@@ -579,7 +596,10 @@ def test_calibrate_refuses_a_simulated_board(answering, capsys):
     answering()
     assert main.main(["calibrate", "--port", "sim://hapkit", "--only", "stops"]) == 1
     told = capsys.readouterr().err
-    assert told == "hapticlab: sim://hapkit has no handle to lead; calibrate a board that is plugged in\n"
+    assert told == (
+        "hapticlab: sim://hapkit has no handle to lead. Calibrate a board that is plugged in, or rehearse it on a simulated "
+        "one: hapticlab calibrate --practice\n"
+    )
 
 
 # ---------------------------------------------------------------- speed against accuracy
@@ -630,11 +650,11 @@ def test_tradeoff_says_as_json_what_to_relax(tmp_path, capsys):
 
 def test_the_names_that_options_offer_are_those_that_the_modules_define():
     assert options.TARGETS[0] == PC
-    assert options.STEPS == STEPS
+    assert options.STEPS == STEPS and options.TROUBLES == TROUBLES
 
 
 def test_every_command_is_a_function_that_is_there():
     commands = options.parser().commands
     assert {name: callable(main._command(one.get_default("command"))) for name, one in commands.items()} == dict.fromkeys(
-        ["demo", "labs", "lab", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate"], True
+        ["demo", "labs", "lab", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate", "bench"], True
     )

@@ -1,4 +1,4 @@
-"""What every paddle must do: simulated, the firmware's core behind sim://, the emulated Uno, and a real board.
+"""What every paddle must do: simulated, the firmware's core behind sim://, the emulated Uno and Pico, and a real board.
 
 A person with a board runs it there: ``pytest tests/device/test_contract.py --port COM3``, the handle led to both stops
 when asked.
@@ -9,6 +9,8 @@ import pytest
 import sympy as sp
 from emulated import emulated_uno
 from emulator import missing
+from pico_emulator import missing as missing_pico
+from pico_loop import emulated_pico
 
 from hapticlab.base.telemetry import Telemetry
 from hapticlab.device.hand.hand import Hand
@@ -36,7 +38,19 @@ z = coordinate("z", unit="m")
 WALL = Scene(force=when(x(n) >= x_o, k * (x(n) - x_o)), name="wall")
 
 
-@pytest.fixture(params=[*PADDLES, *(f"sim:// {name}" for name in BEHIND_A_PORT), "emulated Uno"])
+@pytest.fixture(scope="module")
+def pico():
+    """One board for all: what a run leaves behind is in the contract too."""
+    if missing_pico():
+        pytest.skip(missing_pico())
+    with emulated_pico(hand=HAND) as board:
+        yield board
+
+
+PICO = pytest.param("emulated Pico", marks=pytest.mark.wide)
+
+
+@pytest.fixture(params=[*PADDLES, *(f"sim:// {name}" for name in BEHIND_A_PORT), "emulated Uno", PICO])
 def paddle(request):
     url = request.config.getoption("--port")
     if url:  # a person's board is asked in the place of the first, and the others are left alone
@@ -49,6 +63,8 @@ def paddle(request):
             pytest.skip(missing())
         with emulated_uno(hand=HAND, T=2e-3) as board:
             yield board
+    elif request.param == "emulated Pico":
+        yield request.getfixturevalue("pico")
     elif request.param.startswith("sim://"):
         mechanics = PADDLES[request.param.split()[1]]()
         with connect("sim://hapkit", paddle=mechanics, T=mechanics.T) as board:

@@ -66,7 +66,7 @@ def test_a_simulated_board_of_each_kind_gives_a_wall(name):
         count = 1 / (kind.counts_per_metre or 1e7)
         place = port.handle.x
         assert log.fault is None and place == pytest.approx(0.02 * 100 / 130, abs=3 * count + 2e-4)
-        assert paddle.device.sensor_delay == pytest.approx(kind.sensor_delay)
+        assert paddle.device.sensor_delay == log.sensor_delay == pytest.approx(kind.sensor_delay)
         assert log.F[-100:].mean() == pytest.approx(30 * place, abs=30 * count + 0.01)
 
 

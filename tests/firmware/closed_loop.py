@@ -5,7 +5,7 @@ from collections import deque
 from dataclasses import replace
 
 import numpy as np
-from emulator import CYCLES_PER_SECOND, Uno
+from emulator import Uno
 
 from hapticlab.device.board.settings import pins_of
 from hapticlab.device.link.messages import MOTOR_LAWS, SENSORS
@@ -110,7 +110,7 @@ class ClosedLoop:
         self.board, self.handle, self.sensor = board, handle, sensor
         self.force_full, self.law, self.motor_sign, self.dead, self.noise = force_full, law, motor_sign, dead, noise
         self._past, self._random = deque(maxlen=1 + round(delay / STEP)), np.random.default_rng(7)
-        self._step = round(STEP * CYCLES_PER_SECOND)
+        self._step = round(STEP * board.hz)
         self._next = board.cycle
         self.x = handle.step(0.0, 0.0)
         self._show()
@@ -151,7 +151,7 @@ class ClosedLoop:
 
     def run_until(self, condition, seconds):
         """Go on until ``condition()`` holds, looked at every 50 us, or the time is over."""
-        end = self.board.cycle + round(seconds * CYCLES_PER_SECOND)
+        end = self.board.cycle + round(seconds * self.board.hz)
         while not condition() and self.board.cycle < end:
             self._next += self._step
             self.board.run_to(min(self._next, end))

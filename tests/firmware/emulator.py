@@ -97,6 +97,8 @@ class Uno:
         Registers and RAM, live; what is written here goes past the hooks of registers.
     """
 
+    hz = CYCLES_PER_SECOND
+
     def __init__(self, image, *, eeprom=b"", cause=POWER, carrier=0):
         self._shim = library()
         flash = parse_hex(Path(image).read_text(), str(image))

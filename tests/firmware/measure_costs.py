@@ -20,6 +20,8 @@ sys.path[:0] = [str(ROOT), str(Path(__file__).resolve().parent)]
 
 from bare import Avr, Bench  # noqa: E402
 from cortex import Cortex  # noqa: E402
+from pico_bench import Rp2040  # noqa: E402
+from pico_step import measure_pico_step  # noqa: E402
 from whole_step import measure_step  # noqa: E402
 
 from hapticlab.compiler.boards.cost import COSTS  # noqa: E402
@@ -31,11 +33,11 @@ TYPE = {"R": "f32", "B": "bool", "I": "i32"}
 MODELLED = "modelled, not measured: instructions under unicorn, cycles of the manuals, step and telemetry as on the Uno"
 PROCESSORS = {
     "uno": (Avr, "measured in emulation"),
-    "cortex-m0+": (lambda: Cortex("cortex-m0+"), MODELLED),
+    "pico": (Rp2040, "measured in emulation"),
     "cortex-m4f": (lambda: Cortex("cortex-m4f"), MODELLED),
 }
 #: operands of each kind: typical, awkward, and of the search (children a generation, generations)
-EFFORT = {"uno": (4000, 20_000, 3000, 60), "cortex-m0+": (400, 1500, 200, 12), "cortex-m4f": (300, 600, 100, 6)}
+EFFORT = {"uno": (4000, 20_000, 3000, 60), "pico": (4000, 20_000, 3000, 40), "cortex-m4f": (300, 600, 100, 6)}
 
 
 def interface(op):
@@ -214,9 +216,9 @@ def main(boards):
         if not boards or board in boards:
             tables[board] = {**tables.get(board, {}), **measured(board)}
     if not boards or "step" in boards:
-        step = measure_step()
-        for board in tables.values():
-            board.update(step)
+        step, of_pico = measure_step(), measure_pico_step()
+        for name, board in tables.items():
+            board.update(of_pico if name == "pico" else step)
     COSTS.write_text(as_text(tables))
 
 

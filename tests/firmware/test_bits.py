@@ -3,17 +3,24 @@
 import bare
 import cortex
 import numpy as np
+import pico_emulator
 import pytest
 from bare import Avr, Bench
-from cortex import PROCESSORS, Cortex
+from cortex import Cortex
 from measure_costs import awkward_bits
+from pico_bench import Rp2040
 from test_golden import GOLDEN, NAMES, array, program_of
 
 from hapticlab.compiler.engines.interpreter import Interpreter
 from hapticlab.compiler.ir.operations import OPERATIONS
 from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
 
-BOARDS = ("uno", *PROCESSORS)
+#: name -> why it is not here, and what makes it
+BOARDS = {
+    "uno": (bare.missing, Avr),
+    "pico": (pico_emulator.missing, Rp2040),
+    "cortex-m4f": (cortex.missing, lambda: Cortex("cortex-m4f", counting=False)),
+}
 NUMPY = {
     "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "sqrt": np.sqrt, "floor": np.floor,
     "neg": np.negative, "abs": np.abs, "lt": np.less, "le": np.less_equal, "eq": np.equal,
@@ -24,10 +31,11 @@ SMALLEST_NORMAL = np.finfo(np.float32).smallest_normal
 
 @pytest.fixture(scope="module", params=BOARDS)
 def processor(request):
-    reason = bare.missing() if request.param == "uno" else cortex.missing()
+    missing, make = BOARDS[request.param]
+    reason = missing()
     if reason:
         pytest.skip(reason)
-    return Avr() if request.param == "uno" else Cortex(request.param, counting=False)
+    return make()
 
 
 def all_at_once(operations):

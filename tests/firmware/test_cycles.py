@@ -3,11 +3,13 @@
 import bare
 import cortex
 import numpy as np
+import pico_emulator
 import pytest
 from bare import Avr, Bench, avr_image, avr_tool, symbols
-from cortex import PROCESSORS, Cortex
+from cortex import Cortex
 from five_scenes import SCENES, compiled, handle
 from measure_costs import EFFORT, as_values, awkward, awkward_bits, measure, overheads, program_of
+from pico_bench import Rp2040
 from random_programs import random_program, random_rows
 from whole_step import measure_step
 
@@ -16,17 +18,23 @@ from hapticlab.compiler.boards.board_fit import table
 from hapticlab.compiler.boards.cost import TYPICAL_ERROR, cost, tables
 from hapticlab.compiler.engines.bytecode import OPCODES
 
-BOARDS = ("uno", *PROCESSORS)
+#: name -> why it is not here, and what makes it
+BOARDS = {
+    "uno": (bare.missing, Avr),
+    "pico": (pico_emulator.missing, Rp2040),
+    "cortex-m4f": (cortex.missing, lambda: Cortex("cortex-m4f")),
+}
 needs_uno = pytest.mark.skipif(bool(bare.missing()), reason=str(bare.missing()))
 TICKS = {"uno": 600}  # else 40: unicorn is slower
 
 
 @pytest.fixture(scope="module", params=BOARDS)
 def processor(request):
-    reason = bare.missing() if request.param == "uno" else cortex.missing()
+    missing, make = BOARDS[request.param]
+    reason = missing()
     if reason:
         pytest.skip(reason)
-    made = Avr() if request.param == "uno" else Cortex(request.param)
+    made = make()
     made.board = request.param
     return made
 

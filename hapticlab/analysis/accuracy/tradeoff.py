@@ -55,7 +55,7 @@ def tradeoff(
     paddle: SimulatedPaddle | PaddleProfile,
     *,
     tried: Tried = TRIED,
-    targets: str | Iterable[str] = (PC, "uno", "cortex-m0+", "cortex-m4f"),
+    targets: str | Iterable[str] = (PC, "uno", "pico", "cortex-m4f"),
     conditions: Conditions = CONDITIONS,
     tolerance: float = 1e-2,
     workers: int | Callable[..., Iterable[Any]] | None = None,
@@ -79,7 +79,7 @@ def tradeoff(
         Its damping b [N s/m] and its encoder.
     tried : Tried
         The settings: ``hl.methods.Tried(methods=, T=, substeps=, holds=, force_at=, precision=)``.
-    targets : one or a sequence of {"pc", "uno", "cortex-m0+", "cortex-m4f"}
+    targets : one or a sequence of {"pc", "uno", "pico", "cortex-m4f"}
     conditions : Conditions
         The same for every setting: ``hl.methods.Conditions(motions=, velocity=, live=, every=)``.
     tolerance : float

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .board_pins import UNO_PINS, Pins
+from .board_pins import PICO_PINS, UNO_PINS, Pins
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,38 @@ class Flashing:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """How firmware is built, and copied to a board whose own ROM shows itself as a drive (UF2).
+
+    Attributes
+    ----------
+    called : str
+        The board in a sentence, with its article.
+    image : str
+        In firmware/prebuilt.
+    chip : str
+        As people call it.
+    processor : str
+        As its compiler names it.
+    name : str
+        What the drive is called, and the Board-ID in its INFO_UF2.TXT.
+    family : int
+        Of UF2 files for this chip.
+    ram, flash : int
+        What an image may take [bytes].
+    """
+
+    called: str
+    image: str
+    chip: str
+    processor: str
+    name: str
+    family: int
+    ram: int
+    flash: int
+
+
+@dataclass(frozen=True)
 class Board:
     """A board.
 
@@ -74,9 +106,11 @@ class Board:
         Numbers in a sample: x, v, F and what is watched; a frame of the link carries at most 10.
     T_max : float
         Longest period [s].
+    link : float or None
+        What its own USB carries [bytes/s]; None where the line's baud rate says so.
     usb : tuple of Usb
         Empty for a board that is modelled and was never on a port.
-    flashing : Flashing, optional
+    flashing : Flashing or Drive, optional
         None where this package brings no firmware for it.
     pins : Pins, optional
         What a wiring may ask of it; None where this package brings no firmware for it.
@@ -88,8 +122,9 @@ class Board:
     arena: int
     channels: int
     T_max: float = 10e-3
+    link: float | None = None
     usb: tuple[Usb, ...] = ()
-    flashing: Flashing | None = None
+    flashing: Flashing | Drive | None = None
     pins: Pins | None = None
 
 
@@ -123,8 +158,28 @@ UNO = Board(
     ),
     pins=UNO_PINS,
 )
-CORTEX_M0 = Board(name="cortex-m0+", hz=125e6, word_bits=8, arena=16_384, channels=10)
+PICO = Board(
+    name="pico",
+    hz=125e6,
+    word_bits=8,
+    arena=16_384,
+    channels=10,
+    link=500e3,  # half of what a full-speed bulk endpoint can carry; untried on silicon
+    # github.com/raspberrypi/usb-pid: product numbers of Raspberry Pi's vendor number for firmware on an RP2040
+    usb=(Usb(0x2E8A, 0x000A, "Raspberry Pi Pico"),),
+    flashing=Drive(
+        called="a Raspberry Pi Pico",
+        image="pico.uf2",
+        chip="RP2040",
+        processor="cortex_m0plus",
+        name="RPI-RP2",
+        family=0xE48BFF56,
+        ram=256 * 1024,
+        flash=2048 * 1024 - 8 * 1024,  # the last two sectors hold the settings
+    ),
+    pins=PICO_PINS,
+)
 CORTEX_M4 = Board(name="cortex-m4f", hz=168e6, word_bits=8, arena=16_384, channels=10)
 HOST = Board(name="host", hz=None, word_bits=16, arena=32_768, channels=10, T_max=30e-3)
 
-BOARDS = {board.name: board for board in (UNO, CORTEX_M0, CORTEX_M4, HOST)}
+BOARDS = {board.name: board for board in (UNO, PICO, CORTEX_M4, HOST)}

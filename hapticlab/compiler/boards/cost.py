@@ -220,7 +220,7 @@ def cost(program, board="uno", *, every=1, edges_per_second=0.0):
     ----------
     program : Program
         Of float32 values.
-    board : {"uno", "cortex-m0+", "cortex-m4f", "host"}
+    board : {"uno", "pico", "cortex-m4f", "host"}
         The Uno was measured in emulation, the Cortexes are modelled.
     every : int
         Ticks per telemetry sample, >= 1.

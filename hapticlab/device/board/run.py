@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.missed_events import warn_of_missed
 from ...base.telemetry import Telemetry
+from ...compiler.boards.board_records import BOARDS
 from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
 from ...errors import PaddleError
@@ -56,10 +57,12 @@ class Run:
         Ticks from one sample to the next.
     absent : callable
         Gives for how long this program did not run [s]; asked when the board reports a fault.
+    sensor_delay : float
+        Lag of the board's sensor [s].
     """
 
-    def __init__(self, loaded, every, absent=lambda: 0.0):
-        self._absent = absent
+    def __init__(self, loaded, every, absent=lambda: 0.0, sensor_delay=0.0):
+        self._absent, self.sensor_delay = absent, sensor_delay
         self.loaded, self.program, self.every = loaded, loaded.program, every
         self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
         self._rows, self._taken = deque(), -every
@@ -106,6 +109,7 @@ class Run:
             **own, T=program.T * self.every, delay=delay, channels={c.name: columns[c.name] for c in program.outputs[1:]},
             units=program.units, paddle=paddle, scene=program.name, parameters=values,
             fault=fault_words(self.fault, program.T), every=self.every, changes=tuple(changes),
+            sensor_delay=self.sensor_delay,
         )  # fmt: skip
 
     def _table(self, rows):
@@ -121,8 +125,8 @@ class Run:
         return {"t": tick * self.program.T, **found, "saturated": flags["saturated"], "gap": missing, "overrun": flags["overrun"]}
 
 
-def decimation(program, port, every=None):
-    """Return the ticks from one sample to the next: as asked, or as few as the link carries.
+def decimation(program, port, every=None, board=None):
+    """Return the ticks from one sample to the next: as asked, or as few as the link to a board of this name carries.
 
     Raises
     ------
@@ -130,7 +134,8 @@ def decimation(program, port, every=None):
         If it carries fewer than asked.
     """
     channels = 2 + len(program.outputs)
-    rate = getattr(port, "bytes_per_second", port.baudrate / 10)
+    own = BOARDS[board].link if board in BOARDS else None
+    rate = own or getattr(port, "bytes_per_second", port.baudrate / 10)
     least = max(1, math.ceil((SAMPLE_OVERHEAD + 4 * channels) / program.T / (SAMPLES_SHARE * rate) - 1e-9))
     if every is None:
         return least

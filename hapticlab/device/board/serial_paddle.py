@@ -376,7 +376,7 @@ class SerialPaddle(Paddle):
                 raise PaddleError("the board has no scene yet; give one: paddle.start(scene)")
             return None
         program = self.program(scene, **options)
-        sent = decimation(program, self.exchange.port, every)
+        sent = decimation(program, self.exchange.port, every, self.board["board"])
         if check_fit and not cost(program, every=sent, **self._board()).fits:
             known = {} if isinstance(scene, Program) else {"T": self.T, "velocity": self.velocity}
             fit(scene, every=sent, **self._board(), **known, **options)
@@ -402,7 +402,8 @@ class SerialPaddle(Paddle):
                 self._loaded = load(self.exchange, program, self.board["word_bytes"])
                 for some in in_portions(named_values(program)):
                     send(self.exchange, program, some)
-            run = Run(self._loaded, decimation(self._loaded.program, self.exchange.port, every), self.exchange.absent)
+            sent = decimation(self._loaded.program, self.exchange.port, every, self.board["board"])
+            run = Run(self._loaded, sent, self.exchange.absent, self.device.sensor_delay)
             self._listen(run)
             self.exchange.beating = True
             self.exchange.command("START", self._loaded.crc, run.every, options, force_max, then=run.begin)

@@ -59,7 +59,7 @@ class Streaming:
     def __init__(self, paddle, scene, **options):
         self.paddle = paddle
         self.program = paddle.fitted(scene, None, True, options)
-        self.period = paddle.T * decimation(self.program, paddle.exchange.port)
+        self.period = paddle.T * decimation(self.program, paddle.exchange.port, board=paddle.board["board"])
         self._last_run = self._run = None
         self.place, self.waits, self.fault = 0.0, "", None
 

@@ -2,5 +2,5 @@
 
 In: a board, the person who owns it, a switch in reach. Out: the evidence by which the board ceases to be untried.
 Read ``steps``, what each asks and expects; ``bench``, which walks through them; ``motor_off``, ``stop_times``, ``limits`` and
-``forces``, what each measures; ``lag``; ``report``.
+``forces``, what each measures; ``lag``; ``about`` and ``report``. ``practised`` is a simulated owner.
 """

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import sys
-import zlib
 from contextlib import contextmanager
-from datetime import date
 from typing import TYPE_CHECKING, Any
 
-from ... import __version__
-from ...compiler.boards.board_records import BOARDS
-from ...compiler.engines.firmware_library import firmware_folder
 from ...errors import HapticlabError
 from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
 from ..board.serial_paddle import is_refusal
-from ..link.messages import RESET_CAUSES, row_of, table_hash
+from ..link.messages import HOST_SILENCE_MS, STATES
 from ..setup.connect import connect
 from . import forces, motor_off, stop_times
+from .about import about_board, about_settings
 from .limits import limits
 from .report import BenchReport, Finding
 from .steps import PULL, STEPS
@@ -48,6 +43,9 @@ ON = {
     "force": forces.force,
 }
 WITH = {"over-speed": ("over-speed", "over-travel")}
+STILL_LOWERED = (
+    "The board still stores the lower limits of the test. `hapticlab bench --restore FILE.json` stores the limits from before"
+)
 #: s of pulling before anything is tried
 SETTLES = 0.2
 
@@ -56,7 +54,8 @@ class Bench:
     """What the steps share: the paddle, the person, and how to pull the handle."""
 
     def __init__(self, paddle, person):
-        self.paddle, self.person, self.lowered = paddle, person, False
+        self.paddle, self.person = paddle, person
+        self.lowered = None  # what a board had stored whose limits are lowered for a test
         self.ended = self.log = None  # the run that ended last, and its Telemetry
 
     @property
@@ -144,14 +143,24 @@ def bench(paddle: SerialPaddle, person: Person, *, tell: Callable[[Any], Any] = 
                 ended = "ended in the step 'switch': no step that needs the switch was done"
                 break
     except KeyboardInterrupt:
-        ended = f"interrupted in the step {name!r}; the motor is off"
+        ended = f"interrupted in the step {name!r}; {_motor_off(shared.paddle)}"
     except HapticlabError as problem:
-        ended = f"ended in the step {name!r}; the motor is off: {problem}"
+        ended = f"ended in the step {name!r}: {problem}; {_motor_off(shared.paddle)}"
     finally:
         shared.paddle.abandon()
     if shared.lowered:
-        ended += ". The board still stores the lower limits of the test: store the settings of this report again"
-    return BenchReport(about, tuple(made), ended)
+        ended += f". {STILL_LOWERED}"
+    return BenchReport(about | about_settings(shared.lowered or shared.paddle.settings), tuple(made), ended)
+
+
+def _motor_off(paddle):
+    """Switch the motor off, and return in words what the board says of it."""
+    paddle.abandon()
+    try:
+        state = paddle.state()["state"]
+    except HapticlabError:
+        return f"the board does not answer, and stops its motor {HOST_SILENCE_MS} ms after the last word. Switch the supply off"
+    return "the motor is off" if state != STATES["RUN"] else "the board says that its motor is ON: switch the supply off"
 
 
 def _findings(bench, name, measure):
@@ -168,33 +177,3 @@ def _findings(bench, name, measure):
         if not is_refusal(problem):
             raise
         yield Finding.seen(name, "the step", False, str(problem), "the board takes it")
-
-
-def about_board(paddle):
-    """Return what identifies board, firmware and settings; no person, no computer's name, no path."""
-    board, name = paddle.board, paddle.board["board"]
-    cause, meaning = row_of(RESET_CAUSES, board["reset_cause"]) or ("?", "unknown")
-    shipped = BOARDS[name].flashing if name in BOARDS else None
-    facts = {
-        "paddle": f"{name} {board['ident']:04X}",
-        "date": f"{date.today():%Y-%m-%d}",
-        "port": paddle.url.split("://")[0] if "://" in paddle.url else "serial",
-        "simulated": paddle.exchange.lockstep or paddle.url.startswith("sim://"),
-        "period": f"{paddle.T:g} s",
-        "hapticlab": __version__,
-        "firmware": f"{board['major']}.{board['minor']}, messages {board['table']:08x} (this package: {table_hash():08x})",
-        "image that comes with this package": _image(shipped),
-        "last reset": f"{cause}: {meaning}",
-        "pending before": "; ".join(paddle.notices) or "nothing",
-        "python": f"{sys.version_info.major}.{sys.version_info.minor} on {sys.platform}",
-        "settings": str(paddle.settings) if paddle.settings else "none",
-    }
-    return facts | ({"settings_hex": paddle.settings.to_bytes().hex()} if paddle.settings else {})
-
-
-def _image(flashing):
-    """Name and CRC-32 of an image's file; the board does not tell the CRC-32 of its own flash."""
-    if flashing is None:
-        return "none: this board is not flashed"
-    path = firmware_folder() / "prebuilt" / flashing.image
-    return f"{flashing.image}, CRC-32 {zlib.crc32(path.read_bytes()):08x}" if path.is_file() else f"{flashing.image} is missing"

@@ -30,13 +30,13 @@ def lowered(bench):
     kept = bench.paddle.settings
     middle, part = (kept.travel_min + kept.travel_max) / 2, TRIED_TRAVEL
     low, high = (middle + part * (stop - middle) for stop in (kept.travel_min, kept.travel_max))
-    bench.lowered = True
+    bench.lowered = kept
     _store_held(bench.paddle, changed(kept, speed_max=min(TRIED_SPEED, kept.speed_max), travel_min=low, travel_max=high))
     try:
         yield
     finally:
         store(bench.paddle, kept)
-        bench.lowered = False
+        bench.lowered = None
 
 
 def _store_held(paddle, settings):

@@ -14,7 +14,7 @@ from .person import Person
 from .sensor_readings import measure_noise
 from .sign_check import check_sign
 from .stops import measure_stops
-from .stored_settings import lead_home, offer
+from .stored_settings import lead_home, let_cool, offer
 from .wiring_check import check_wiring
 
 if TYPE_CHECKING:
@@ -111,6 +111,7 @@ def _sensor(paddle, person, date):
 
 def _sign(paddle, person, date):
     require_wiring(paddle)
+    let_cool(paddle, person)
     lead_home(paddle, person)
     found = check_sign(paddle, person)
     person.say(str(found))
@@ -119,6 +120,7 @@ def _sign(paddle, person, date):
 
 def _force(paddle, person, date):
     require_wiring(paddle)
+    let_cool(paddle, person)
     settings, words = measure_force(paddle, person)
     settings = changed(settings, date=date, ident=_named(settings.ident))
     return offer(paddle, person, settings, [*words, f"before     force_full = {paddle.settings.force_full:g} N"])

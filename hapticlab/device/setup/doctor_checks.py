@@ -208,7 +208,7 @@ def sensor_moved(paddle, person):
     seen = readings(paddle, MOVED)
     sweep, jump = seen.sweep, seen.jump
     if sweep < LEAST_SWEEP:
-        cure = "check the sensor's wires (A2, or D2 and D3), that its magnet is there and turns, and the kind of sensor"
+        cure = f"check the sensor's wires{_sensor_wires(paddle)}, that its magnet is there and turns, and the kind of sensor"
         return Check("sensor", "fault", f"{sweep:.0f} counts while the handle was moved back and forth", cure)
     kept = paddle.settings
     wraps = f", {sweep / kept.wrap:.1f} turns of {kept.wrap}" if kept and kept.sensor != SENSORS["QUADRATURE"] else ""
@@ -220,6 +220,15 @@ def sensor_moved(paddle, person):
         "lost where the sensor wraps"
     )
     return Check("sensor", "attention", words, cure)
+
+
+def _sensor_wires(paddle):
+    """Return the sensor's pins in words, or nothing where the board has no wiring."""
+    kept = paddle.settings
+    if kept is None or not pins_of(kept.motor_pins):
+        return ""
+    built = built_as(board_with_pins(paddle.board["board"]), Wiring.of(kept))
+    return f" ({', '.join(f'{role} on {built.pins.name(built.wiring.pins()[role])}' for role in built.wiring.sensor_roles)})"
 
 
 def home(paddle, person):

@@ -4,7 +4,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...compiler.boards.board_records import BOARDS, Bootloader
+from ...compiler.boards.board_records import BOARDS, Bootloader, Flashing
 from ...compiler.engines.firmware_library import firmware_folder
 from ...errors import PaddleError, PortError
 from ..link.serial_ports import open_port, port_watched
@@ -22,7 +22,7 @@ CHIPS = {
     bytes.fromhex("1e9801"): "ATmega2560",
 }
 #: board -> how firmware comes onto it
-FLASHED = {name: board.flashing for name, board in BOARDS.items() if board.flashing}
+FLASHED = {name: board.flashing for name, board in BOARDS.items() if isinstance(board.flashing, Flashing)}
 SYNC, ENTER, LEAVE, ADDRESS, WRITE, READ, SIGN = b"0", b"P", b"Q", b"U", b"d", b"t", b"u"
 END_OF_COMMAND, IN_SYNC, OK = b" ", b"\x14", b"\x10"
 #: s. The first is longer than optiboot blinks (0.4 s) before it listens: more than two bytes sent meanwhile are lost,

@@ -18,7 +18,7 @@ other: so both sides have to agree, each with |Z| >= 2.5.
 
 import random
 import secrets
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from ...scene.notation.symbols import n, parameters, x
 from ...scene.scene import Scene
 from ..board.settings import changed
 from ..link.messages import UNCHECKED_FORCE_N
+from ..wiring import Wiring
+from ..wirings import built_as
+from .built import board_with_pins
 from .stored_settings import lead_home, offer
 
 #: the spring [N/m]: 0.5 N at 10 mm, below the passivity limit 2 b/T of any paddle with b >= 0.025 N s/m at 1 kHz
@@ -49,7 +52,8 @@ LEAST_MOTION = 2e-3
 class SignCheck:
     """What the motor was seen to do; Z, work [J] an interval, motion [m].
 
-    ``verdict`` is "right", "wrong", "one way", "unclear", "nothing" or, for a handle that nobody moved, "unmoved".
+    ``wires`` are those that tell the driver its direction. ``verdict`` is "right", "wrong", "one way", "unclear",
+    "nothing" or, for a handle that nobody moved, "unmoved".
     """
 
     verdict: str
@@ -57,13 +61,14 @@ class SignCheck:
     work: float
     motion: float
     intervals: int
+    wires: str = "the wires of its driver"
 
     def __str__(self):
         seen = f"Z = {self.Z:+.1f} of {self.intervals} intervals (clear above {CLEAR}), {self.work * 1e6:+.0f} uJ each"
         words = {
             "right": "the motor pulls the handle in the right direction",
             "wrong": "the motor pushes the handle in the wrong direction: its two wires are swapped",
-            "one way": "the motor pushes in one direction only: check the wire of its direction pin (D8)",
+            "one way": f"the motor pushes in one direction only: check {self.wires}",
             "unclear": "the motor works, but its sign is not clear; continue slowly, without releasing the handle, on both sides",
             "unmoved": f"the handle moved by {self.motion * 1e3:.1f} mm only; move it 10 to 20 mm from the middle and release it",
             "nothing": "no effect of the motor was found: check its supply, its plug and its wires; a handle that moves "
@@ -86,11 +91,18 @@ def measure_sign(paddle, person, *, seed=None):
         more, on, side = intervals(log)
         terms, signs, sides = np.append(terms, more), np.append(signs, 2.0 * on - 1), np.append(sides, side)
         seen = np.append(seen, log.x)
-        found = judge(terms, signs, sides, seen)
+        found = replace(judge(terms, signs, sides, seen), wires=_direction_wires(paddle))
         if found.verdict in ("right", "wrong", "one way"):
             return found
         person.say(f"Not clear yet: {log.fault or found}")
     return found
+
+
+def _direction_wires(paddle):
+    """Return the wires that tell a driver its direction, such as "DIR on D8"."""
+    built = built_as(board_with_pins(paddle.board["board"]), Wiring.of(paddle.settings))
+    roles = [role for role in built.wiring.motor_roles if role not in ("PWM", "EN")]
+    return " and ".join(f"{role} on {built.pins.name(built.wiring.pins()[role])}" for role in roles)
 
 
 def judge(terms, signs, sides, positions):
@@ -160,7 +172,7 @@ def check_sign(paddle, person, *, seed=None):
             return found
         found = measure_sign(paddle, person, seed=None if seed is None else seed + 1)
         if found.verdict == "wrong":
-            raise PaddleError(f"with the opposite sign {found}. Neither sign is right; check the wire of the direction pin (D8).")
+            raise PaddleError(f"with the opposite sign {found}. Neither sign is right; check {found.wires}.")
     if found.verdict == "right" and not paddle.settings.checked:
         words = [f"measured   {found}", "to store   the motor's sign is checked: full force from now on"]
         offer(paddle, person, changed(paddle.settings, checked=1), words)

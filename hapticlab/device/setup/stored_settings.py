@@ -5,6 +5,8 @@ from ..board.homing import state_flag
 from ..board.upload import read_settings, upload
 from .person import agrees
 
+#: s: the longest wait for a motor that is taken to be warm, and from one look to the next
+COOLS, LOOK = 300.0, 1.0
 #: how often a person may try to lead the handle to both stops
 TRIES = 3
 
@@ -52,3 +54,13 @@ def lead_home(paddle, person):
     if state_flag(paddle.exchange, "TRAVEL_MISMATCH"):
         raise PaddleError("the handle moved further than the distance between the calibrated stops: calibrate the stops again")
     raise PaddleError("the handle did not reach both calibrated stops: remove any obstacle, or calibrate the stops again")
+
+
+def let_cool(paddle, person):
+    """Wait until the board takes its motor to be cool enough; settings of a weaker motor make what it gave before count more."""
+    if paddle.state()["heat"] <= 1:
+        return
+    person.say("The board takes the motor to be warm. It is not driven until it has cooled, within some minutes.")
+    until = paddle.exchange.now() + COOLS
+    while paddle.state()["heat"] > 1 and paddle.exchange.now() < until:
+        paddle.exchange.wait(lambda: False, LOOK)

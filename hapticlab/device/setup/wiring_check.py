@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 from ...errors import LinkError, PaddleError
 from ..board.settings import changed, nominal
+from ..profiles import PROFILES
 from ..wiring import Wiring
-from ..wirings import built_as
+from ..wirings import BUILDS, built_as
 from .built import ask_built, board_with_pins, show
 from .sensor_readings import JUMP, LEAST_SWEEP, REST, most_at_rest, readings
 from .stored_settings import offer, store
@@ -44,7 +45,7 @@ def check_wiring(paddle, person, ident=0):
     """
     build = ask_built(person, board_with_pins(paddle.board["board"]))
     show(person, build)
-    if not _unconfirmed(paddle, person, build.wiring, ident):
+    if not _unconfirmed(paddle, person, build, ident):
         return False
     person.say("Switch the supply of the motor OFF and leave it off. The sensor is checked first, and the motor gives no force.")
     for _ in range(TRIES):
@@ -104,6 +105,8 @@ def _fault(seen, wiring, at):
     """Return what the board itself found wrong with the sensor, in words."""
     if seen.fault is None:
         return ""
+    if "SENSOR" not in seen.fault:
+        return f"the handle could not be watched: {seen.fault}"
     causes = {
         "MAGNETORESISTIVE": "the wire is off, the sensor has no supply, or its magnet is missing",
         "QUADRATURE": "both lines changed at once: they touch each other, or the supply of the encoder is missing",
@@ -139,17 +142,36 @@ def _pin_name(paddle, pin):
     return built_as(board_with_pins(paddle.board["board"]), Wiring.of(paddle.settings)).pins.name(pin)
 
 
-def _unconfirmed(paddle, person, wiring, ident):
+def begun(was, build, ident=0):
+    """Return what a board is to keep of a paddle that is built, its wiring not confirmed.
+
+    Parameters
+    ----------
+    was : Settings or None
+        What it keeps now. Where the sensor is the same, its constants stay.
+    build : Build
+    ident : int
+        The name of a paddle that has none yet.
+    """
+    wiring = build.wiring
+    if was is not None and (Wiring.of(was).sensor, Wiring.of(was).sensor_pins) == (wiring.sensor, wiring.sensor_pins):
+        return rewired(was, wiring)
+    alike = {one.wiring: name for name, one in PROFILES.items() if one.wiring}
+    kinds = {(BUILDS[name].wiring.sensor, BUILDS[name].wiring.drive): profile for name, profile in alike.items()}
+    profile = alike.get(build.name) or kinds.get((wiring.sensor, wiring.drive), "hapkit")
+    return rewired(nominal(profile, ident=was.ident if was is not None else ident), wiring)
+
+
+def _unconfirmed(paddle, person, build, ident):
     """Store a wiring that nobody has confirmed yet, if the person agrees; return whether the board has it now."""
-    was = paddle.settings
-    new = rewired(was or nominal("hapkit", ident=ident), wiring)
+    was, new = paddle.settings, begun(paddle.settings, build, ident)
     if was is not None and new == changed(was, wired=0, checked=0):
         words = ["kept       the wiring on the board is this one; it is checked again"]
         new = was
     else:
         words = ["to store   this wiring, not confirmed: the motor stays off, and its sign is to be checked again"]
         if new.date == 0:
-            words.append("to store   nominal constants of the sensor: measure the stops next")
+            words.append("to store   nominal constants of such a paddle: measure its stops and its force next")
     if new is was:
         person.say("\n".join(words))
         return True
@@ -159,8 +181,8 @@ def _unconfirmed(paddle, person, wiring, ident):
         if problem.result != "RANGE":
             raise
         raise PaddleError(
-            f"wiring: {wiring}; the firmware on this board was built for another kind of paddle and rejects it. Run `hapticlab "
-            "flash` and choose this paddle, then calibrate."
+            f"wiring: {build.wiring}; the firmware on this board was built for another kind of paddle and rejects it. Run "
+            "`hapticlab flash` and choose this paddle, then calibrate."
         ) from problem
 
 

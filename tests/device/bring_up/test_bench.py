@@ -1,6 +1,7 @@
 """The walk through a first power-up: on simulated boards, sound and faulty, and on the emulated Uno."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 from emulated import emulated_uno
@@ -10,12 +11,14 @@ import hapticlab as hl
 from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.bring_up import bench as walk
 from hapticlab.device.bring_up import limits, motor_off, steps, stop_times
+from hapticlab.device.bring_up.about import settings_of
 from hapticlab.device.bring_up.bench import OFF, ON, bench
 from hapticlab.device.bring_up.practised import PractisingOwner
 from hapticlab.device.bring_up.report import Finding
 from hapticlab.device.bring_up.steps import STEPS
 from hapticlab.device.link.messages import STATES
 from hapticlab.device.link.serial_ports import open_port
+from hapticlab.device.setup import sign_check
 from hapticlab.device.setup.calibrate import calibrate
 
 STOPS = [("host silent", 0.1), ("not finite", 0.0), ("over-speed", 0.0), ("over-travel", 0.0)]
@@ -79,6 +82,19 @@ class TestWhole:
         assert report["force", "force for 1.8 N"].found == pytest.approx(1.8, abs=0.02)
 
     @pytest.mark.wide
+    def test_a_new_board_is_calibrated_stopped_and_only_then_given_more_force(self, monkeypatch):
+        monkeypatch.setattr(sign_check, "secrets", SimpleNamespace(randbits=lambda _: 1))  # sessions still draw their own
+        port = open_port("sim://hapkit")
+        port.put_on(None, store=b"")
+        checked = {}
+        with SerialPaddle("sim://hapkit", port=port) as new:
+            owner = PractisingOwner(new)
+            report = bench(new, owner, tell=lambda found: checked.setdefault(found.step, owner.board.settings.checked))
+        assert verdicts(report) == {}, str(report)
+        assert checked["cable"] == 0 and checked["lag"] == 1  # 0.5 N at most until every stop was tried
+        assert report["calibration", "stops measured"].found != "nominal"
+
+    @pytest.mark.wide
     @pytest.mark.skipif(missing() is not None, reason=str(missing()))
     def test_the_emulated_uno(self, monkeypatch):
         monkeypatch.setattr(motor_off, "LOOP", 0.5)
@@ -140,12 +156,15 @@ class TestPartial:
         assert report.ended.startswith("interrupted in the step 'over-speed'") and "still stores" not in report.ended
         assert paddle.settings == kept
 
-    def test_a_link_that_fails_while_limits_are_lowered_is_told(self, paddle, monkeypatch):
+    def test_a_link_that_fails_while_limits_are_lowered_is_told(self, paddle, monkeypatch, tmp_path):
         only(monkeypatch, "over-speed")
+        kept = paddle.settings
         owner = Acts(paddle, flick=lambda: paddle.exchange.port.close())
         report = bench(paddle, owner)
-        assert "the motor is off" in report.ended and "still stores the lower limits" in report.ended
-        assert "speed_max         2 " in report.page()  # what to store again
+        assert "does not answer, and stops its motor 100 ms after" in report.ended
+        assert "still stores the lower limits" in report.ended and "the motor is off" not in report.ended
+        _, data = report.save(tmp_path / "partial")
+        assert settings_of(data) == kept  # what --restore stores
 
     def test_a_board_without_settings_is_watched_only(self, monkeypatch):
         monkeypatch.setattr(motor_off, "LOOP", 0.1)

@@ -48,7 +48,10 @@ def test_another_wiring_is_stored_unconfirmed_and_then_confirmed(monkeypatch):
     assert [(one.wired, one.checked) for one in commits] == [(0, 0), (1, 0)]
     now = kept(paddle)
     assert (Wiring.of(now), now.ident) == (build("longhorn_d6").wiring, 7)
-    assert (now.date, now.metres_per_count) == (0, pytest.approx(10e-6)), "constants of the other sensor are not this one's"
+    longhorn = nominal("longhorn")
+    assert (now.date, now.metres_per_count, now.force_full) == (
+        0, pytest.approx(longhorn.metres_per_count), pytest.approx(longhorn.force_full),
+    ), "constants of the other paddle are not this one's"  # fmt: skip
     for words in (
         "board D6       driver EN",
         "board D2       sensor A",
@@ -180,3 +183,30 @@ def test_doctor_compares_what_is_built_with_what_the_board_is_told():
     unconfirmed = bench.paddle(store=changed(HAPKIT, wired=0, checked=0).to_bytes())
     assert doctor_checks.wiring(unconfirmed, None).state == "attention"
     assert doctor_checks.wiring(bench.paddle(), None).state == "skipped"
+
+
+@pytest.mark.parametrize(
+    ("name", "profile"), [("longhorn_d6", "longhorn"), ("l298", "longhorn"), ("motor_shield", "motor_shield")]
+)
+def test_a_new_paddle_begins_with_the_constants_of_its_kind(name, profile):
+    new = wiring_check.begun(None, build(name), 9)
+    assert (Wiring.of(new), new.ident, new.wired, new.checked) == (build(name).wiring, 9, 0, 0)
+    assert new.metres_per_count == nominal(profile).metres_per_count and new.force_full == nominal(profile).force_full
+
+
+def test_another_driver_keeps_the_constants_of_the_sensor():
+    own = Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (4, 5, 11), (2, 3), 31_372)
+    assert wiring_check.begun(changed(LONGHORN, date=20261101), build("longhorn_d11")) == changed(
+        LONGHORN, date=20261101, **own.settings(), wired=0, checked=0
+    )
+
+
+def test_a_weaker_motor_that_is_taken_to_be_warm_is_waited_for():
+    """Half of what 2 N may heat is twice what 1 N may: with 60 s to cool by 1/e, 60 ln 2 = 42 s until it may be driven."""
+    paddle = bench.paddle(store=HAPKIT.to_bytes(), sensor=LONGHORN.sensor)
+    person = bench.Scripted(paddle, YES | WIRED | BUILT)
+    calibrate(paddle, person, date=20261121, only="wiring")
+    begun = paddle.exchange.now()
+    stored_settings.let_cool(paddle, person)
+    assert "takes the motor to be warm" in person.words
+    assert paddle.state()["heat"] <= 1 and 25 < paddle.exchange.now() - begun < 43

@@ -27,8 +27,16 @@ def in_pieces(stepping, ticks, pieces, path=push):
 
 @pytest.mark.parametrize(
     "more",
-    [{}, {"counts_per_metre": 78125.0}, {"delay": 1.3e-3}, {"coulomb": 0.03, "noise": 1e-5}, {"force_max": 1.0}],
-    ids=["plain", "encoder", "delay", "friction and noise", "limit"],
+    [
+        {},
+        {"counts_per_metre": 78125.0},
+        {"delay": 1.3e-3},
+        {"coulomb": 0.03, "noise": 1e-5},
+        {"force_max": 1.0},
+        {"delay": 3e-4, "sensor_delay": 1.6e-3},
+        {"force_max": 1.0, "duty_dead": 0.1, "compensated": False},
+    ],
+    ids=["plain", "encoder", "delay", "friction and noise", "limit", "sensor lag", "motor"],
 )
 def test_pieces_are_bit_for_bit_one_run(more):
     hand = hl.Hand(m=0.02, b=1.0, k=200.0, push_noise=0.01, intent=push)

@@ -1,0 +1,77 @@
+"""Before firmware is written: is the paddle that is built the one that the board is told? No motor moves after it unasked."""
+
+from contextlib import suppress
+
+from ...errors import HapticlabError, LinkError
+from ..board.serial_paddle import SerialPaddle
+from ..board.settings import changed, pins_of
+from ..wiring import Wiring
+from ..wirings import built_as
+from .built import ask_built, board_with_pins, show
+from .stored_settings import store
+
+#: s that firmware of this package may take to answer; a new board has none
+HELLO = 1.0
+
+
+def before_flash(port, board, person=None, *, tell=print):
+    """Ask a board what it is told of its wiring, compare it with what is built, and warn where they differ.
+
+    A wiring that is not the stored one is taken back: wired = 0 and checked = 0, and a kept scene does not start any more. The
+    settings stay where they are while firmware is written, and new firmware keeps the motor off until `calibrate` has
+    confirmed the wiring.
+
+    Parameters
+    ----------
+    port : str
+    board : str
+        For which the firmware is.
+    person : Person, optional
+        The person who knows what is built; None compares nothing and says so.
+    tell : callable
+        Called with each sentence.
+    """
+    built = ask_built(person, board_with_pins(board)) if person is not None else None
+    if built is not None:
+        show(person, built)
+    try:
+        paddle = SerialPaddle(port, hello=HELLO)
+    except LinkError as problem:
+        other = "firmware of another version, whose settings will not be used"
+        tell(f"The board has {other if problem.result == 'VERSION' else 'no hapticlab firmware yet'}.")
+        tell(f"{AFTER} Until then, {OFF}.")
+        return
+    except HapticlabError:
+        return  # flashing itself says what is wrong with the port
+    try:
+        for sentence in _compared(paddle, board, built):
+            tell(sentence)
+    finally:
+        paddle.close()
+
+
+OFF = "switch the supply of the motor off"
+AFTER = "After flashing the motor stays off until `hapticlab calibrate` has confirmed the wiring."
+
+
+def _compared(paddle, board, built):
+    """Yield sentences on what is stored and what is built, having taken back what does not fit."""
+    kept, has = paddle.settings, paddle.board["board"]
+    if has != board:
+        yield f"Warning: the firmware on this board says that it is a board {has!r}; the new firmware is for {board!r}."
+    if kept is None or not pins_of(kept.motor_pins):
+        yield f"The board has no settings. {AFTER}"
+        return
+    told = built_as(board_with_pins(has), Wiring.of(kept))
+    state = "confirmed" if kept.wired else "not confirmed"
+    if built is None:
+        yield f"The board is set to the wiring {told.in_short()}, {state}. If another one is built, {OFF}."
+    elif built.wiring == told.wiring:
+        yield f"The board is set to this wiring, {state}."
+    else:
+        yield f"Warning: the board is set to {told.in_short()}, but {built.in_short()} is built. Now {OFF}."
+        with suppress(LinkError):  # firmware without a kept scene
+            paddle.forget()
+        if kept.wired:
+            store(paddle, changed(kept, wired=0, checked=0))
+        yield f"The stored wiring counts no more. {AFTER}"
