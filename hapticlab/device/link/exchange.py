@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from ...errors import LinkError, PaddleError, PortError
 from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS, row_of
 from .port_faults import slept
-from .presence import Presence
+from .presence import LONGEST_PAUSE, Presence
 from .serial_ports import port_watched, read_available
 from .wire import Decoder, encode
 
@@ -171,13 +171,16 @@ class Exchange:
     def _send(self, frame):
         self.check()
         self._last_sent = self.now()
+        begun = self.presence.now()
         try:
             with port_watched(self.port):
                 self.port.write(frame)
         except PortError as problem:
-            # where the time ran out while this program was stopped, the port is not blocked: the frame counts as lost
-            if problem.cause != "silent" or not self.absent():
-                raise self._explained(problem) from problem.__cause__
+            # a blocked port takes the time that a write may take; longer, this program was stopped, and the frame is lost
+            if problem.cause == "silent" and self.presence.now() - begun > self.port.write_timeout + LONGEST_PAUSE:
+                self.presence.note()
+                return
+            raise self._explained(problem) from problem.__cause__
 
     def absent(self):
         """Return for how long this program did not run since the last START [s]; 0 where time is virtual."""

@@ -21,7 +21,7 @@ class Presence:
     Parameters
     ----------
     clock : callable
-        Gives a time [s].
+        Gives a time [s]; it is the attribute ``now``.
 
     Examples
     --------
@@ -35,12 +35,12 @@ class Presence:
     """
 
     def __init__(self, clock=sleepless):
-        self._clock, self._longest = clock, 0.0
+        self.now, self._longest = clock, 0.0
         self._last = clock()
 
     def note(self):
         """Say that the program runs now."""
-        now = self._clock()
+        now = self.now()
         if now - self._last > LONGEST_PAUSE:
             self._longest = max(self._longest, now - self._last)
         self._last = now
@@ -51,9 +51,9 @@ class Presence:
 
     def absent(self):
         """Return the longest time for which the program did not run [s], 0 where it always did."""
-        now = self._clock() - self._last
-        return round(max(self._longest, now if now > LONGEST_PAUSE else 0.0), 3)
+        since = self.now() - self._last
+        return round(max(self._longest, since if since > LONGEST_PAUSE else 0.0), 3)
 
     def forget(self):
         """Begin anew."""
-        self._longest, self._last = 0.0, self._clock()
+        self._longest, self._last = 0.0, self.now()

@@ -69,9 +69,13 @@ def test_a_write_that_ran_out_of_time_in_a_sleep_is_a_frame_lost():
     ended(port, exchange)
 
 
-def test_a_write_that_ran_out_of_time_awake_is_a_port_that_is_blocked():
-    port = FakePort(slept_in_write=0.0)
+@pytest.mark.parametrize("blocked_for", [0.0, 1.0, 1.05])
+def test_a_write_that_ran_out_of_time_awake_is_a_port_that_is_blocked(blocked_for):
+    """It takes the second that a write may take, and a little more; also after an earlier sleep."""
+    port = FakePort(slept_in_write=blocked_for)
     exchange = exchange_on(port)
+    port.time += 50.0
+    exchange.presence.note()
     with pytest.raises(PortError, match=r"accepted no data for 1 s; plug it in again") as blocked:
         exchange.ask("PING", 5)
     assert blocked.value.cause == "silent" and len(port.written) == 1

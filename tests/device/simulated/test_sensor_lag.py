@@ -1,6 +1,7 @@
 """A sensor that lags: against an integration from event to event, in lanes, in every engine, and at no cost where it is off."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ def integrated(paddle, ticks, v):
     seen = {n: v * at for at, n in reads.items() if at < 0}  # it came evenly
     instants = sorted({*(n * T for n in range(ticks + 1)), *(at for at in reads if at >= 0), *(
         n * T + paddle.delay for n in range(ticks))})  # fmt: skip
-    instants = [a for a, b in itertools.pairwise([*instants, np.inf]) if b - a > 1e-12 and a <= ticks * T]
+    instants = [a for a, b in itertools.pairwise([*instants, np.inf]) if b - a > 1e-12 and a < ticks * T + 1e-12]
     y, truth, arrivals = np.array([0.0, v]), [], {}
     for now, until in itertools.pairwise(instants):
         tick = int(now / T + 1e-9)
@@ -92,6 +93,15 @@ def test_lanes_and_sweeps_have_it():
     alone = [SimulatedPaddle(m=0.05, b=1.0, T=T, sensor_delay=lag) for lag in lags]
     peaks = [np.abs(one.run(hl.wall()(k=150, x_o=0), duration=0.3, v=0.1).F).max() for one in alone]
     assert swept.values.ravel() == pytest.approx(peaks, rel=1e-12) and len(set(peaks)) == 4
+
+
+def test_lanes_have_the_motor():
+    """Its force at full duty is force_max where no other is given, also where that is an axis; energy is of what acted."""
+    paddle, limits = SimulatedPaddle(m=0.05, b=0.1, T=T, duty_dead=0.1, force_max=1.0, compensated=False), np.array([1.0, 4.0])
+    swept = hl.sweep(hl.wall(), paddle, 0.3, metric="energy", k=300, x_o=0, v=0.2, force_max=limits)
+    alone = [replace(paddle, force_max=limit).run(hl.wall()(k=300, x_o=0), duration=0.3, v=0.2) for limit in limits]
+    drawn = [hl.energy(log).extracted for log in alone]
+    assert swept.values.ravel() == pytest.approx(drawn, rel=1e-9) and drawn[0] != drawn[1]
 
 
 def test_lanes_of_other_periods_lag_as_long():
