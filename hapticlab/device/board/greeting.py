@@ -2,6 +2,7 @@
 
 import math
 
+from ... import __version__
 from ...errors import LinkError
 from ..link.messages import RESET_CAUSES, STATES, row_of, table_hash
 from .run import fault_words
@@ -28,7 +29,7 @@ def say_hello(exchange, url, seconds):
     if said["table"] != table_hash():
         raise LinkError(
             f"{url}: the board's firmware {said['major']}.{said['minor']} uses a different version of the messages from "
-            "this package. Flash the firmware of this package: hapticlab flash",
+            f"hapticlab {__version__}. Flash the firmware that comes with it: hapticlab flash",
             "VERSION",
         )
     return said | {"board": said["board"].rstrip(b"\0").decode("ascii", "replace")}

@@ -12,7 +12,9 @@ from bad_line import Peer
 
 import hapticlab as hl
 from hapticlab.device.board.serial_paddle import SerialPaddle
+from hapticlab.device.board.settings import nominal
 from hapticlab.device.link.messages import STATES
+from hapticlab.device.link.serial_ports import open_port
 from hapticlab.device.link.wire import encode
 from hapticlab.errors import LinkError, PaddleError, ParameterError, PortError
 from hapticlab.scene.notation.symbols import n, parameters, x
@@ -149,6 +151,15 @@ def test_a_limit_that_is_none_is_refused_here(board, force_max):
 def test_a_limit_holds(board, force_max):
     log = board.run(LEAN(k=0, push=0.1), duration=0.01, force_max=force_max)
     assert np.allclose(log.F, min(0.1, force_max), atol=1e-7)
+
+
+def test_a_motor_whose_sign_nobody_checked_gives_half_a_newton():
+    port = open_port("sim://hapkit")
+    port.put_on(None, store=nominal("hapkit", wired=1, checked=0, ident=1).to_bytes())
+    with SerialPaddle("sim://hapkit", port=port) as unchecked:
+        unchecked.home(at=0.0)
+        log = unchecked.run(LEAN(k=0, push=3.0), duration=0.02)
+    assert np.abs(log.F).max() == 0.5 and log.saturated.all()
 
 
 def test_after_a_refused_start_set_means_the_scene_that_runs(board):
