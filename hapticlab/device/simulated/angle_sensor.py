@@ -16,8 +16,8 @@ class AngleSensor:
     Examples
     --------
     >>> sensor = AngleSensor(wrap=100, flight=1e-3)
-    >>> [sensor.reading(counts, 1e-3 * k) for k, counts in enumerate((98, 101, 104))]   # it begins anew after a third
-    [98, 33, 4]
+    >>> [sensor.reading(counts, 1e-3 * k) for k, counts in enumerate((98, 101, 104))]   # it begins anew after two thirds
+    [98, 66, 4]
     """
 
     def __init__(self, wrap, flight):
