@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from .. import __version__
+from ..compiler.boards.board_records import BOARDS
 from ..course.drawings.wiring_files import wiring_svg
 from ..device.bring_up.about import settings_of
 from ..device.bring_up.bench import bench as first_power_up
@@ -81,6 +82,7 @@ def flash(parser, options):
     """Write the firmware into a board."""
     tell = partial(print, file=sys.stderr)
     if options.board in COPIED:
+        before_flash(options.port or _port_of(options.board), options.board, _who(options), tell=tell)
         print(copy_firmware(options.image, options.board, tell=tell))
         return 0
     port = options.port or _only_port()
@@ -181,6 +183,13 @@ def _agree(options, person, what):
         raise PaddleError(f"{what} Nobody can be asked here: give --yes")
     if not agrees(person, f"{what} Go on?"):
         raise PaddleError("nothing was done")
+
+
+def _port_of(board):
+    """The only port with the USB numbers of a board, or None."""
+    numbers = {(usb.vendor, usb.product) for usb in BOARDS[board].usb}
+    found = [port.device for port in available_ports() if (port.vid, port.pid) in numbers]
+    return found[0] if len(found) == 1 else None
 
 
 def _only_port():

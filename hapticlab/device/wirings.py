@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from ..base.shows_itself import ShowsItself
 from ..compiler.boards.board_pins import PINS, Pins
 from ..errors import PaddleError
-from .wiring import DRIVE_WORDS, SENSOR_WORDS, Wiring
+from .wiring import DRIVE_WORDS, SENSOR_WORDS, WITH_PWM, Wiring
 
 #: of a driver, on every drawing and table
 OUTPUTS, SUPPLY = ("OUT1", "OUT2"), ("V+", "GND")
@@ -109,6 +109,24 @@ class Build(ShowsItself):
     def _mark(self, terminal):
         return self.marked.get(terminal, terminal)
 
+    def held_low(self) -> tuple[str, ...]:
+        """Return the driver's inputs that need a resistor to GND, so that they are low while the board starts.
+
+        Examples
+        --------
+        >>> from hapticlab.device.wirings import build
+        >>> build("l298").held_low(), build("hapkit").held_low()
+        (('EN',), ())
+        """
+        return () if "driver" in self.plugged else WITH_PWM[self.wiring.drive]
+
+    def remarks(self) -> tuple[str, ...]:
+        """Return the notes, and the resistors to add."""
+        pins = [self.pins.name(self.wiring.pins()[role]) for role in self.held_low()]
+        keep = "keep" if pins[1:] else "keeps"
+        words = f"10 kOhm from {' and from '.join(pins)} to GND {keep} the motor off while the board starts."
+        return (words, *self.notes) if pins else self.notes
+
     def in_short(self) -> str:
         """Return its name and the pin of each role.
 
@@ -135,7 +153,7 @@ class Build(ShowsItself):
         return [f"board   {self.board}, driver {self.driver}, sensor {self.sensor}", *(line.rstrip() for line in lines)]
 
     def __str__(self) -> str:
-        return "\n".join([f"{self.name}: {self.title}", *self.table(), *self.notes, f"source: {self.source}"])
+        return "\n".join([f"{self.name}: {self.title}", *self.table(), *self.remarks(), f"source: {self.source}"])
 
 
 def _remark(wire):

@@ -36,7 +36,9 @@ def test_every_wire_of_the_record_is_drawn_between_its_two_ends(name):
     right = [t.get_text() for t in axes.texts if abs(t.get_position()[0] - PART[1] + 0.15) < 1e-6]
     power = [one for one in BUILDS[name].wires() if one.begin[0] != "board"]
     assert sorted(right) == sorted(one.begin[1] if one.begin[0] == "driver" else one.end[1] for one in power)
-    assert {"fuse", "switch", "motor", "supply"} <= {t.get_text() for t in axes.texts}
+    texts = [t.get_text() for t in axes.texts]
+    assert {"fuse", "switch", "motor", "supply"} <= set(texts)
+    assert texts.count("10 k\N{GREEK CAPITAL LETTER OMEGA}") == len(BUILDS[name].held_low())
 
 
 @pytest.mark.parametrize("board", HEADERS)

@@ -41,7 +41,7 @@ class WiringSheet:
 
     def draw(self):
         """Draw board, driver, motor, supply and sensor, every wire between them, the board's edge, and what to know."""
-        wires, notes = self.build.wires(), [part for note in self.build.notes for part in wrap(note, LETTERS)]
+        wires, notes = self.build.wires(), [part for note in self.build.remarks() for part in wrap(note, LETTERS)]
         of_driver = [one for one in wires if one.begin[0] == "board" and one.end[0] == "driver"]
         of_sensor = [one for one in wires if one.end[0] == "sensor"]
         wired = any(not one.fixed for one in (*of_driver, *of_sensor))
@@ -52,6 +52,7 @@ class WiringSheet:
         box(axes, BOARD[0], low, BOARD[1] - BOARD[0], top - low)
         words(axes, BOARD[0], top + 0.3, self._called(), at="left", bold=True)
         _part(axes, top, max(len(of_driver), POWER), of_driver, f"driver: {self.build.driver}")
+        _resistors(axes, top - 0.7 * ROW, self.build, len(of_driver))
         _power(axes, top - 0.7 * ROW, self.build.marked)
         _part(axes, low + ROW * (len(of_sensor) + 0.4), len(of_sensor), of_sensor, f"sensor: {self.build.sensor}")
         if wired:
@@ -78,6 +79,18 @@ def _part(axes, top, rows, wires, called):
         words(axes, PART[0] + 0.15, y, wire.end[1], at="left")
     if wires[0].fixed:
         words(axes, (BOARD[1] + PART[0]) / 2, top - 0.25 * ROW, "already on the board", size=SMALL - 1)
+
+
+def _resistors(axes, first, build, rows):
+    """Draw a resistor from each input that carries PWM to GND, the last row."""
+    ground = first - ROW * (rows - 1)
+    for k, role in enumerate(build.held_low()):
+        x, y = 5.0 + 1.2 * k, first - ROW * build.wiring.motor_roles.index(role)
+        line(axes, [(x, y), (x, ground)], INK)
+        box(axes, x - 0.1, ground + 0.14, 0.2, 0.34, fill=INK)
+        words(axes, x + 0.17, ground + 0.31, "10 k\N{GREEK CAPITAL LETTER OMEGA}", at="left", size=SMALL - 2)
+        for end in (y, ground):
+            axes.plot(x, end, "o", color=INK, markersize=3.5)
 
 
 def _power(axes, first, marked):

@@ -23,7 +23,8 @@ def before_flash(port, board, person=None, *, tell=print):
 
     Parameters
     ----------
-    port : str
+    port : str or None
+        None for a board that shows itself as a drive, and not as a port.
     board : str
         For which the firmware is.
     person : Person, optional
@@ -34,6 +35,9 @@ def before_flash(port, board, person=None, *, tell=print):
     built = ask_built(person, board_with_pins(board)) if person is not None else None
     if built is not None:
         show(person, built)
+    if port is None:
+        tell(f"The settings on the board cannot be read. If another paddle is built than before, {OFF}, and calibrate again.")
+        return
     try:
         paddle = SerialPaddle(port, hello=HELLO)
     except LinkError as problem:

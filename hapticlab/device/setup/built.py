@@ -35,7 +35,7 @@ def ask_built(person, board):
 
 def show(person, build):
     """Show every wire of a paddle, in a table and where it is drawn."""
-    person.say("\n".join(["", *build.table(), *(f"note    {note}" for note in build.notes)]))
+    person.say("\n".join(["", *build.table(), *(f"note    {note}" for note in build.remarks())]))
     where = person.picture(build)
     if where:
         person.say(f"drawing {where}")

@@ -112,6 +112,7 @@ def _sensor(paddle, person, date):
 def _sign(paddle, person, date):
     require_wiring(paddle)
     let_cool(paddle, person)
+    person.say("The motor gives a force now, at first 0.5 N at most. Switch its supply on, and keep a hand at the switch.")
     lead_home(paddle, person)
     found = check_sign(paddle, person)
     person.say(str(found))

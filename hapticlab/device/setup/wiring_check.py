@@ -215,7 +215,7 @@ def _confirmed(paddle, person):
         return _left_off(paddle, person)
     if not paddle.settings.wired:
         store(paddle, changed(paddle.settings, wired=1))
-    person.say("Confirmed. Before the step sign, switch the supply on and keep a hand at its switch: at first 0.5 N at most.")
+    person.say("Confirmed. The supply of the motor stays off until the step that checks its sign.")
     return True
 
 

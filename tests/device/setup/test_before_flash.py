@@ -78,3 +78,12 @@ def test_a_board_that_cannot_be_asked(monkeypatch, problem, words):
     told = []
     before_flash("COM3", "uno", tell=told.append)
     assert words in "\n".join(told)
+
+
+def test_a_board_that_is_a_drive_cannot_be_asked():
+    told = []
+    before_flash(None, "pico", tell=told.append)
+    assert told == [
+        "The settings on the board cannot be read. If another paddle is built than before, switch the supply of the motor off, "
+        "and calibrate again."
+    ]
