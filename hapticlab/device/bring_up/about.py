@@ -15,6 +15,11 @@ from ..board.settings import Settings
 from ..link.messages import RESET_CAUSES, row_of, table_hash
 
 
+def is_simulated(paddle):
+    """Return whether no board of silicon is there."""
+    return paddle.exchange.lockstep or paddle.url.startswith("sim://")
+
+
 def about_board(paddle):
     """Return what identifies board, firmware and settings; no person, no computer's name, no path."""
     board, name = paddle.board, paddle.board["board"]
@@ -24,7 +29,7 @@ def about_board(paddle):
         "paddle": f"{name} {board['ident']:04X}",
         "date": f"{date.today():%Y-%m-%d}",
         "port": paddle.url.split("://")[0] if "://" in paddle.url else "serial",
-        "simulated": paddle.exchange.lockstep or paddle.url.startswith("sim://"),
+        "simulated": is_simulated(paddle),
         "period": f"{paddle.T:g} s",
         "hapticlab": __version__,
         "firmware": f"{board['major']}.{board['minor']}, messages {board['table']:08x} (this package: {table_hash():08x})",
