@@ -121,10 +121,10 @@ def identify_motor(duties: ArrayLike, forces: ArrayLike, *, confidence: float = 
     """
     from scipy.optimize import least_squares
 
-    duties, forces = _checked(duties, forces)
+    given, felt = _checked(duties, forces)
     least = [-np.inf, 0.0, *[-np.inf] * 4]  # a dead band is not below zero
     fitted = least_squares(
-        lambda p: _curve(p[:-1], duties) + p[-1] - forces, _start(duties, forces), x_scale="jac", bounds=(least, np.inf)
+        lambda p: _curve(p[:-1], given) + p[-1] - felt, _start(given, felt), x_scale="jac", bounds=(least, np.inf)
     )
     order, rest = fitted.x[1:-1], fitted.fun
     if fitted.x[0] <= 0 or np.any(np.diff([*order, 1.0]) <= 0):
@@ -132,27 +132,23 @@ def identify_motor(duties: ArrayLike, forces: ArrayLike, *, confidence: float = 
             "identify.motor: the force does not grow with the duty. Check the direction of the motor and the scale, tap the "
             "table before each reading, and measure again."
         )
-    _require_readings(duties, [*order, 1.0])
-    free = len(duties) - len(NAMES)
+    _require_readings(given, [*order, 1.0])
+    free = len(given) - len(NAMES)
     variance = rest @ rest / free * np.diag(np.linalg.pinv(fitted.jac.T @ fitted.jac))
     half = student(confidence, free) * np.sqrt(variance)
     rms = float(np.sqrt(np.mean(rest**2)))
-    if rms > POOR * np.ptp(forces) or np.max(half[1:-1]) > VAGUE:
+    poor = POOR * float(np.ptp(felt))
+    if rms > poor or np.max(half[1:-1]) > VAGUE:
         raise AnalysisError(
             f"identify.motor: the readings lie {rms:.3g} N rms off the curve, and its duties are known to +- "
-            f"{np.max(half[1:-1]):.2g} at worst; needs {POOR * np.ptp(forces):.2g} N and +- {VAGUE:g}. Measure more carefully, "
+            f"{np.max(half[1:-1]):.2g} at worst; needs {poor:.2g} N and +- {VAGUE:g}. Measure more carefully, "
             "with more duties."
         )
     estimates = {
-        name: Estimate(name, *_above(name, value, value - width, value + width), unit)
+        name: Estimate(name, value, max(value - width, 0.0) if name == "duty_dead" else value - width, value + width, unit)
         for (name, unit), value, width in zip(NAMES.items(), fitted.x.tolist(), half.tolist(), strict=True)
     }
-    return MotorCurve(estimates, confidence, rms, duties, forces)
-
-
-def _above(name, *numbers):
-    """Return numbers, of a dead band not below zero."""
-    return tuple(max(number, 0.0) if name == "duty_dead" else number for number in numbers)
+    return MotorCurve(estimates, confidence, rms, given, felt)
 
 
 def _curve(p, duties):
@@ -161,7 +157,8 @@ def _curve(p, duties):
     return full * np.interp(duties, knots, PARTS)
 
 
-def _checked(duties, forces):
+def _checked(duties: ArrayLike, forces: ArrayLike) -> tuple[Array, Array]:
+    """Return duties and forces by rising duty, as arrays."""
     duties, forces = np.asarray(duties, float), np.asarray(forces, float)
     if duties.shape != forces.shape or duties.ndim != 1:
         raise AnalysisError(f"identify.motor: {duties.shape} duties, {forces.shape} forces; needs one force for each duty.")

@@ -44,7 +44,7 @@ class PaddleFit(Found):
             raise AnalysisError(
                 "the mass was not found, because a spin-down determines only b/m and coulomb/m. Add a step or a chirp, or give m="
             )
-        told = {key: self[key].value for key in ("m", "b", "coulomb") if key in self.estimates}
+        told: dict[str, Any] = {key: self[key].value for key in ("m", "b", "coulomb") if key in self.estimates}
         told |= {key: max(told[key], 0.0) for key in ("b", "coulomb") if key in told}
         return PaddleProfile(
             name, **{"b": 0.0, **told}, counts_per_metre=1 / self.quantum if self.quantum else None, rounding=rounding,
