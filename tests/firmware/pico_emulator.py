@@ -136,7 +136,7 @@ class Pico:
         self._set.append(("pin", pin, int(level)))
 
     def angle(self, reading, fault=None):
-        """Turn the AS5048A; ``fault`` is "parity", "error" or "wire"."""
+        """Turn the AS5048A; ``fault`` is "parity", "error", "wire" or "low"."""
         self._set += [("angle", int(reading)), ("fault", fault)]
 
     def open_port(self, baudrate=500_000):

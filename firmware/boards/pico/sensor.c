@@ -6,15 +6,18 @@
 enum { READING_MIN = 82, READING_MAX = 4013 };
 enum { FIRST_ANALOG = 26, LAST_ANALOG = 28, ADC_ON = 1, ADC_START = 1 << 2, ADC_READY = 1 << 8 };
 
-/* AS5048A: 16 bits a frame, clock idle low, data taken with its falling edge, at most 10 MHz. A frame's answer comes with
- * the next frame. Bit 15 of either is even parity, bit 14 of an answer an error, until it is read. */
+/* AS5048A: 16 bits a frame, clock idle low, data taken with its falling edge. It allows 10 MHz; its wires are long. Every
+ * answer comes with the next frame: a tick asks for the angle, and then, taking it, for the diagnostics, which the next tick
+ * takes as it asks again. Bit 15 of a frame is even parity, bit 14 of an answer an error, until it is read. */
 enum { MISO = 16, CLOCK = 18, MOSI = 19 };
-enum { READ_ANGLE = 0xffff, CLEAR_ERROR = 0x4001, ERROR = 1 << 14, ANGLE = 0x3fff };
-enum { SPI_16_BITS = 15, SPI_SECOND_EDGE = 1 << 7, SPI_ON = 2, SPI_BUSY = 1 << 4, SPI_PRESCALE = 14 }; /* 8.9 MHz */
+enum { READ_ANGLE = 0xffff, READ_DIAGNOSTICS = 0x7ffd, CLEAR_ERROR = 0x4001, ERROR = 1 << 14, ANGLE = 0x3fff };
+enum { READY = 1 << 8, OVERFLOWN = 1 << 9 }; /* of the diagnostics: offsets are compensated; the angle is not valid */
+enum { SPI_16_BITS = 15, SPI_SECOND_EDGE = 1 << 7, SPI_ON = 2, SPI_BUSY = 1 << 4, SPI_PRESCALE = 28 }; /* 4.5 MHz */
 enum { NO_SENSOR = 255 }; /* until there are settings */
 enum { PAUSE = 5 }; /* turns of about 10 clocks: 350 ns from select to clock, and between frames */
 
 static uint8_t sensor = NO_SENSOR, select_pin;
+static uint16_t diagnostics; /* of the tick before */
 static hl_reading last;
 
 static uint8_t sensor_can(const hl_settings *settings)
@@ -74,21 +77,24 @@ static void spi_begin(uint8_t pin)
     REGISTER(SPI0_PRESCALE) = SPI_PRESCALE;
     REGISTER(SPI0_CR1) = SPI_ON;
     spi(CLEAR_ERROR); /* of before the supply was there */
+    spi(READ_DIAGNOSTICS);
 }
 
-static uint8_t odd(uint16_t bits)
+static uint8_t is_damaged(uint16_t answer)
 {
-    uint16_t folded = bits ^ bits >> 8;
+    uint16_t folded = answer ^ answer >> 8;
     folded ^= folded >> 4;
-    return (0x6996 >> (folded & 15)) & 1; /* the parity of every 4 bits */
+    const uint8_t odd = 0x6996 >> (folded & 15) & 1; /* of the parities of every 4 bits */
+    return odd || (answer & ERROR);
 }
 
+/* A line that is always low has a right parity: the bit that says the sensor is ready tells. */
 static hl_reading as5048a(hl_core *core)
 {
-    spi(READ_ANGLE);
-    const uint16_t answer = spi(READ_ANGLE);
-    if (odd(answer) || answer & ERROR) {
+    const uint16_t answer = spi(READ_DIAGNOSTICS);
+    if (is_damaged(answer) || is_damaged(diagnostics) || (diagnostics & (READY | OVERFLOWN)) != READY) {
         spi(CLEAR_ERROR);
+        spi(READ_DIAGNOSTICS);
         hl_core_fault(core, HL_FAULT_SENSOR, (float)answer);
         return last;
     }
@@ -122,6 +128,8 @@ void sensor_sample(void)
 {
     if (sensor == HL_SENSOR_MAGNETORESISTIVE) {
         SET_BITS(ADC_CS) = ADC_START;
+    } else if (sensor == HL_SENSOR_AS5048A) {
+        diagnostics = spi(READ_ANGLE);
     }
 }
 
@@ -161,7 +169,6 @@ void board_configure(hl_core *core)
     if (sensor == HL_SENSOR_MAGNETORESISTIVE) {
         pin_function(first, FUNCTION_NONE, PAD_ANALOG);
         REGISTER(ADC_CS) = ADC_ON | (uint32_t)(first - FIRST_ANALOG) << 12;
-        sensor_sample(); /* a tick may be under way that asks for the result */
     } else if (sensor == HL_SENSOR_QUADRATURE) {
         quadrature_begin(first);
     } else if (sensor == HL_SENSOR_AS5048A) {

@@ -1,7 +1,7 @@
 // An AS5048A on the SPI bus: 14 bits of angle, each answer to the frame before, even parity in the highest bit.
 //
 // A frame is 16 clocks while its select line is low; data sheet v1-11, 5.2. The bus takes its true time.
-const ANGLE = 0x3fff, ERROR = 1 << 14;
+const ANGLE = 0x3fff, DIAGNOSTICS = 0x3ffd, READY = 1 << 8, ERROR = 1 << 14;
 
 const withParity = (word) => {
     let ones = 0;
@@ -12,7 +12,7 @@ const withParity = (word) => {
 export class AngleSensor {
     constructor(chip) {
         this.chip = chip;
-        this.select = null, this.angle = 0, this.fault = null; // fault: "parity", "error", "wire"
+        this.select = null, this.angle = 0, this.fault = null; // fault: "parity", "error", "wire", "low"
         chip.onReset.push((rp) => this.#wire(rp));
     }
 
@@ -32,6 +32,7 @@ export class AngleSensor {
 
     #exchange(value, bits) {
         const pin = this.rp.gpio[this.select];
+        if (this.fault === "low") return 0;
         if (!pin || this.fault === "wire") return (1 << bits) - 1;
         if (pin.functionSelect === 5 && pin.outputValue) return (1 << bits) - 1; // not selected: the line is pulled up
         const reply = this.answer >> (16 - this.bits - bits) & ((1 << bits) - 1);
@@ -43,7 +44,7 @@ export class AngleSensor {
     #end() {
         if (this.bits !== 16) { this.bits = this.shift = 0; return; }
         const register = this.shift & 0x3fff;
-        const word = register === ANGLE ? this.angle & 0x3fff : 0;
+        const word = register === ANGLE ? this.angle & 0x3fff : register === DIAGNOSTICS ? READY : 0;
         this.answer = withParity(word | (this.fault === "error" ? ERROR : 0)) ^ (this.fault === "parity" ? 1 << 15 : 0);
         this.bits = this.shift = 0;
     }
