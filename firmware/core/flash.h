@@ -15,6 +15,13 @@ static inline uint8_t hl_flash_byte(const uint8_t *p)
     return byte;
 }
 
+static inline uint16_t hl_flash_word(const uint16_t *p)
+{
+    uint16_t word;
+    __asm__("lpm %A0, Z+\n\tlpm %B0, Z" : "=&r"(word), "+z"(p));
+    return word;
+}
+
 /* into Z, where ijmp wants it */
 static inline const void *hl_flash_pointer(const void *const *p)
 {
@@ -23,10 +30,12 @@ static inline const void *hl_flash_pointer(const void *const *p)
     return pointer;
 }
 #define HL_FLASH_BYTE(p) hl_flash_byte(p)
+#define HL_FLASH_WORD(p) hl_flash_word(p)
 #define HL_FLASH_POINTER(p) hl_flash_pointer(p)
 #else
 #define HL_FLASH
 #define HL_FLASH_BYTE(p) (*(p))
+#define HL_FLASH_WORD(p) (*(p))
 #define HL_FLASH_POINTER(p) (*(p))
 #endif
 

@@ -23,9 +23,10 @@ static const uint16_t roots[] HL_FLASH = {
 HL_APART static uint16_t root_of(uint32_t bits)
 {
     const uint8_t odd = (uint8_t)(bits >> 16) >> 7, k = ((uint8_t)(bits >> 16) & 0x7f) >> 2;
-    uint16_t chord[2];
-    hl_flash_copy((uint8_t *)chord, (const uint8_t *)&roots[odd ? k : k | 32], sizeof chord);
-    uint16_t root = (uint16_t)(chord[0] + ((uint32_t)(uint16_t)(chord[1] - chord[0]) * (uint16_t)(bits >> 2) >> 16));
+    const uint16_t *chord = roots + (odd ? k : k | 32);
+    uint16_t root = HL_FLASH_WORD(chord);
+    const uint16_t rise = (uint16_t)(HL_FLASH_WORD(chord + 1) - root);
+    root = (uint16_t)(root + ((uint32_t)rise * (uint16_t)(bits >> 2) >> 16));
     uint32_t left = ((bits << 8) | UINT32_C(0x80000000)) >> odd;
     left -= (uint32_t)root * root; /* a chord is below its arc, by three steps at most */
     while (left > root && !(left >> 31)) {

@@ -31,6 +31,7 @@ static volatile uint8_t head, tail;
 void hl_core_start(hl_core *core)
 {
     memset(core, 0, sizeof *core);
+    core->rx_ready = 1; /* every byte comes to hl_core_byte */
     board_store_read(core, offsetof(hl_record, loop), (uint8_t *)&core->settings, sizeof core->settings);
     core->unread = 1;
     probe.cause = board_reset_cause(core);

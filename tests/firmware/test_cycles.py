@@ -138,6 +138,7 @@ def test_the_rest_of_a_step_and_a_frame_are_what_the_table_says():
         assert fixed + each * size == pytest.approx(f + e * size, rel=0.1)
     for name, answer in found["answers"].items():
         assert answer[0] <= 1.1 * committed["answers"][name][0]
+    assert found["heat"] <= 1.1 * committed["heat"]
     assert found["sent_byte"] <= committed["sent_byte"] and found["received_byte"] <= committed["received_byte"]
 
 

@@ -175,11 +175,11 @@ def test_edges_of_an_encoder_are_part_of_the_step():
 
 
 def test_an_encoders_edges_are_counted_where_there_is_one():
-    """As many as the speed limit allows: 2 m/s over 12.8 um are 156 250 in a second, of 95 cycles each."""
+    """As many as the speed limit allows: 2 m/s over 12.8 um are 156 250 in a second, of 103 cycles each."""
     costs = []
     for sensor in ("MAGNETORESISTIVE", "QUADRATURE"):
         with emulated_uno(settings=nominal("hapkit", wired=1, checked=1, ident=1, sensor=SENSORS[sensor])) as paddle:
             costs.append(paddle.cost(wall()[0]))
     without, edges = costs
-    assert (without.edges, edges.edges) == (0.0, pytest.approx(95 * 2 / 12.8e-6, rel=0.05))
+    assert (without.edges, edges.edges) == (0.0, pytest.approx(103 * 2 / 12.8e-6, rel=0.05))
     assert edges.T_needed() > 2 * without.T_needed() and "none counted" in str(without)

@@ -4,7 +4,7 @@ The tick's interrupt is timed from its call to the end of its return, in ticks t
 cycles on the same samples, counted by :mod:`bare`, are taken off. The most is the longest of these ticks, and for the
 floats of the step what awkward operands take more than its own: of the motor searched in the image, of position and
 velocity from the table of operations. A frame is what hl_core_poll takes to send a sample, an answer what it takes
-to answer STATUS or SET; an interrupt comes with every byte.
+to answer STATUS or SET, and to follow the motor's heat; an interrupt comes with every byte.
 """
 
 import tempfile
@@ -20,15 +20,18 @@ from uno_port import offer
 
 import hapticlab as hl
 from hapticlab.compiler.boards.cost import SEARCH_MARGIN, tables
+from hapticlab.compiler.boards.link_traffic import HEAT_TICKS
 from hapticlab.device.board.settings import nominal
 from hapticlab.device.link.wire import decode, encode
 
 TICKS = 400
 OVERHEAD = 11  # bytes of a sample's frame beside its numbers
 RARELY = 17  # ticks a sample, coprime with the 16 of the heat: a tick of both is among those watched
-SOONEST = 16 * 8  # cycles before its end in which a step has to set the next tick, main.c
+SOONEST = 8 * 8  # cycles before its end in which a step has to set the next tick, main.c
 LATE_T = 0.807e-3  # [s], no multiple of the 50 us in which the host looks
-EDGE = 95  # cycles of an encoder's interrupt at most
+#: cycles of an interrupt that the emulator's count of it lacks: 4 of the return, and 4 in which a processor answers it
+ANSWERED = 8
+EDGE = 95 + ANSWERED  # cycles of an encoder's interrupt at most
 OTHERS = USART_UDRE, USART_RX, INT0, INT1  # interrupts that may come into a tick
 REGISTER_20 = 20  # where the first four bytes after a pointer are given to a function
 
@@ -111,6 +114,19 @@ def answer_cycles(elf, snapshots, request):
     return max(found)
 
 
+def heat_cycles(elf, snapshots):
+    """Return the most cycles that hl_heat_follow takes, once in HEAT_TICKS ticks, with no force, some and all."""
+    cpu, found = Avr(elf), []
+    core = cpu.place("uno_core")
+    for memory in snapshots[4:-4:4]:
+        for part in (0, 20_000, 65_535):
+            cpu.write(RAM_BEGIN, memory)
+            for _ in range(HEAT_TICKS):
+                cpu.call("hl_heat", core, part)
+            found.append(cpu.call("hl_heat_follow", core)[1])
+    return max(found)
+
+
 def awkward_more(elf, snapshots):
     """Return what the motor takes at most with any force within 10 N, beyond its most with one of 1.234 N."""
     from measure_costs import awkward_bits  # which imports this module
@@ -166,6 +182,7 @@ def measure_step():
         most = max(quiet(handle)) - machine  # springs: with every channel, in a tick of heat and record
         late = max(latest(image, values) for values in (1, 8))
         more = awkward_more(elf, handle.snapshots)
+        heat = heat_cycles(elf, handle.snapshots)
         answers = [answer_cycles(elf, handle.snapshots, request) for request in requests]
         for channels in (0, 3):
             handle, _, (udre, rx), _ = watched_run(image, springs(channels))
@@ -177,8 +194,8 @@ def measure_step():
         "step": [round(np.mean(typical[:2])), round(most) + SOONEST, SOONEST + round((most + more) * (1 + SEARCH_MARGIN))],
         "frame": [round(frames[0][1] - per_byte * frames[0][0]), round(per_byte, 1)],
         "answers": {"STATUS": [status], "SET": [round(one - each), round(each)]},
-        "sample_bytes": OVERHEAD, "sent_byte": round(udre), "received_byte": round(rx),
-        "late": round(late), "edge": EDGE,
+        "heat": heat, "sample_bytes": OVERHEAD, "late": round(late), "edge": EDGE,
+        "sent_byte": round(udre) + ANSWERED, "received_byte": round(rx) + ANSWERED,
     }  # fmt: skip
 
 

@@ -145,10 +145,21 @@ __addsf3:
     mov r0, r24
     or r0, r23
     or r0, r22
-    or r0, r31
-    breq .Lexact_zero
+    breq .Lcancelled
+.Lnearly:
     rcall hl_float_normalise
     rjmp .Lpack
+.Lcancelled:
+    tst r31
+    breq .Lexact_zero
+    subi r25, 24        ; half a last bit is left, the highest of r31
+    brcs 2f
+    breq 2f
+    mov r24, r31
+    clr r31
+    rjmp .Lpack
+2:  subi r25, -24
+    rjmp .Lnearly
 .Lone_bit:                ; the usual case, unless it is a denormal already
     cpi r25, 1
     breq .Lpack
@@ -258,8 +269,8 @@ hl_float_normalise:
     clr zero
     ret
 
-; Exponents and mantissas apart; on to `rare` unless both numbers are normal.
-.macro unpack rare
+; Exponents and mantissas apart; on to `rare_a` unless a is normal, to `rare_b` if b alone is not.
+.macro unpack rare_a, rare_b
     mov r27, r25
     eor r27, r21
     lsl r24
@@ -269,12 +280,13 @@ hl_float_normalise:
     mov r30, r25
     dec r30
     cpi r30, 254
-    brsh 1f
-    mov r30, r21
+    brlo 1f
+    rjmp \rare_a
+1:  mov r30, r21
     dec r30
     cpi r30, 254
     brlo 2f
-1:  rjmp \rare
+    rjmp \rare_b
 2:  sec
     ror r24
     sec
@@ -305,7 +317,7 @@ hl_float_restore:
 
     .global __mulsf3
 __mulsf3:
-    unpack .Lmul_rare
+    unpack .Lmul_rare_a, .Lmul_rare_b
     add r25, r21
     clr r21
     rol r21
@@ -383,17 +395,27 @@ __mulsf3:
 .Llarge:
     rjmp .Linfinity
 
-.Lmul_rare:
-    rcall hl_float_restore
+.Lmul_rare_a:
     cpi r25, 255
-    breq .Lmul_a_special
+    breq .Lmul_special
     cpi r21, 255
-    breq .Lmul_b_special
-    cp r25, r21
-    breq .Lmul_zero       ; both are below the least normal number
-    brlo 1f
-    rcall hl_float_swap
-1:  mov r30, r24        ; a is the denormal one
+    breq .Lmul_special
+    tst r21
+    brne 1f
+    rjmp .Lzero         ; both are below the least normal number
+.Lmul_rare_b:
+    cpi r21, 255
+    breq .Lmul_special
+    movw r30, r22
+    movw r22, r18
+    movw r18, r30
+    movw r30, r24
+    movw r24, r20
+    movw r20, r30
+1:  sec
+    ror r20
+    lsr r24             ; a is the denormal one
+    mov r30, r24
     or r30, r23
     or r30, r22
     breq .Lmul_zero
@@ -410,9 +432,12 @@ __mulsf3:
     rjmp .Lmul_mantissas
 .Lmul_zero:
     rjmp .Lzero
-.Lmul_a_special:
+.Lmul_special:
+    rcall hl_float_restore
+    cpi r25, 255
+    brne 1f
     rcall hl_float_swap
-.Lmul_b_special:          ; b is infinite or nan: is a, which may be so too, zero or nan?
+1:          ; b is infinite or nan: is a, which may be so too, zero or nan?
     mov r30, r20
     lsl r30
     or r30, r19
@@ -435,7 +460,7 @@ __mulsf3:
 
     .global __divsf3
 __divsf3:
-    unpack .Ldiv_rare
+    unpack .Ldiv_rare, .Ldiv_rare
     sub r25, r21
     sbc r21, r21
     subi r25, 130       ; the exponent less 1: + 126

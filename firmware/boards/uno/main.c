@@ -10,7 +10,7 @@
 #include <util/atomic.h>
 
 #define CLOCKS_PER_US (HL_CLOCK_HZ / 1000000)
-#define SOONEST 16 /* clocks: a compare value nearer than this could be passed before it is written */
+#define SOONEST 8 /* clocks: a compare value nearer than this could be passed before it is written */
 #define GUARD 0x5AC3A50FUL
 
 hl_core uno_core;

@@ -138,7 +138,7 @@ class Cost(ShowsItself):
         """
         T = self.T if T is None else T
         if promise:
-            step = self.bound + self.step[2] + self.traffic.interrupts(T, self.first) + self.late
+            step = self.bound + self.step[2] + self.traffic.interrupts(T, self.first, self.late)
         else:
             step = self.typical + self.step[1] + self.traffic.usual_interrupts(T, self.late)
             step = max(step, self.typical * (1 + TYPICAL_ERROR) + self.step[0] + self.frame)

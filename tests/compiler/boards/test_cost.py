@@ -48,11 +48,12 @@ def test_the_longest_step_is_a_sum_done_by_hand():
     frame = uno["frame"][0] + 23 * (uno["frame"][1] + uno["sent_byte"])
     assert said.longest() == max(usual, np.ceil(1.1 * said.typical + typical + np.ceil(frame)))
     received = 26 + 6  # a heartbeat too, after an answer of 12
-    at_most = said.bound + bound + uno["late"] + received * uno["received_byte"] + 50 * uno["sent_byte"]
+    # while the tick is held off, a request is not answered yet, and no other comes
+    at_most = said.bound + bound + max(uno["late"], received * uno["received_byte"]) + 50 * uno["sent_byte"]
     assert said.longest(promise=True) == at_most
     turning = cost(wall_program(), edges_per_second=20_000)
     assert turning.longest(promise=True) == at_most + 20 * uno["edge"]
-    assert "1900000 cycles per second for edges" in str(turning) and "none counted for edges" in str(said)
+    assert f"{20_000 * uno['edge']} cycles per second for edges" in str(turning) and "none counted for edges" in str(said)
     with pytest.raises(ProgramError, match="edges_per_second = -1; needs"):
         cost(wall_program(), edges_per_second=-1)
 
@@ -78,8 +79,8 @@ def test_samples_need_their_time_too():
     traffic = cost(wall_program()).traffic
     enough = next(free for free in range(20_000) if traffic.leaves_room(free, 1e-3))
     assert enough == max(
-        np.ceil(traffic.telemetry + traffic.request / 10),
-        np.ceil((traffic.request + traffic.frame) / 3 + 23 * traffic.sent_byte),
+        np.ceil(traffic.telemetry + traffic.request / 10 + traffic.heat / 16),
+        np.ceil((traffic.request + traffic.frame + traffic.heat) / 3 + 23 * traffic.sent_byte),
     )
     seldom = replace(traffic, every=10)
     assert next(free for free in range(20_000) if seldom.leaves_room(free, 1e-3)) < enough
@@ -168,7 +169,7 @@ def test_a_cost_prints_its_figures_and_its_answer():
 
 
 def test_between_the_two_figures_it_fits_but_is_not_promised():
-    said = cost(wall_program())
+    said = cost(wall_program(), every=10)  # with a sample in every tick these take longer than the longest step
     needs, promise = said.T_needed(), said.T_needed(promise=True)
     tight = replace(said, bound=16_000)
     assert promise > needs and said.promised == (said.T >= promise)
