@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ...errors import HapticlabError
 from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
+from ..board.homing import state_flag
 from ..board.serial_paddle import is_refusal
 from ..link.messages import HOST_SILENCE_MS, STATES
 from ..setup.connect import connect
@@ -121,14 +122,17 @@ def bench(paddle: SerialPaddle, person: Person, *, tell: Callable[[Any], Any] = 
     --------
     >>> import hapticlab as hl
     >>> from hapticlab.device.bring_up.bench import bench
-    >>> from hapticlab.device.bring_up.practised import PractisingOwner
+    >>> from hapticlab.device.setup.person import Person
+    >>> class Leaves(Person):
+    ...     def say(self, text):
+    ...         print(text.split("\\n")[1])
+    ...     def ask(self, question):
+    ...         raise KeyboardInterrupt
     >>> with hl.connect("sim://hapkit") as board:
-    ...     report = bench(board, PractisingOwner(board))  # doctest: +ELLIPSIS
-    <BLANKLINE>
+    ...     report = bench(board, Leaves())
     == supply off
-    ...
-    >>> report.ended, report["host silent", "fault"].found
-    ('whole', 'HOST_SILENT')
+    >>> report.ended
+    "interrupted in the step 'supply off'; the motor is off"
     """
     shared, made, ended, name = Bench(paddle, person), [], "whole", "supply off"
     about = about_board(paddle)
@@ -163,10 +167,18 @@ def _motor_off(paddle):
     return "the motor is off" if state != STATES["RUN"] else "the board says that its motor is ON: switch the supply off"
 
 
+def _why_no_force(paddle):
+    """Return why a board gives no force now, or ""."""
+    if paddle.settings is None:
+        return "the board has no settings: run `hapticlab calibrate`"
+    return "" if state_flag(paddle.exchange, "HOMED") else "the board does not know where the handle is"
+
+
 def _findings(bench, name, measure):
     """Yield what one step finds; where the board or the package refuses it, that is what was found."""
-    if name in ON and bench.paddle.settings is None:
-        yield Finding.skipped(name, "the board has no settings: run `hapticlab calibrate`")
+    why = _why_no_force(bench.paddle) if name in ON else ""
+    if why:
+        yield Finding.skipped(name, why)
         return
     for shown in WITH.get(name, (name,)):
         bench.person.say(str(STEPS[shown]))

@@ -176,6 +176,17 @@ class TestPartial:
         assert {step for step, _ in verdicts(report)} == {*ON, "calibration"}
         assert all("calibrate" in f.note for f in report.findings if f.verdict == "skipped")
 
+    def test_a_board_that_does_not_know_where_its_handle_is_gives_no_force(self, monkeypatch):
+        only(monkeypatch, "sensor moved", "switch", "STOP")
+        monkeypatch.setattr(motor_off, "MOVED", 4.5)
+        port = open_port("sim://hapkit")
+        with SerialPaddle("sim://hapkit", port=port) as lost:
+            report = bench(lost, Acts(lost, one_stop=lambda: None))
+            assert set(verdicts(report)) == {(name, "the whole step") for name in ("switch", "STOP")} | {
+                ("sensor moved", "the step")
+            }
+            assert port.board.duty == 0
+
 
 class TestFaulty:
     def test_an_act_that_did_not_come_is_skipped_or_differs(self, paddle, monkeypatch):

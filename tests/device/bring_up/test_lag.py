@@ -15,7 +15,7 @@ def tugged(sign=1, **constants):
     """Positions under a square wave of 0.4 N, as an encoder of 12.8 um shows them, and the changes of the force."""
     mechanics = SimulatedPaddle(T=T, counts_per_metre=1 / 12.8e-6, hand=Hand(m=0.01, b=0.3, k=15), **constants)
     handle, x = Handle(mechanics), []
-    force = [0.4 * (-1) ** ((k + LASTS // 2) // LASTS) for k in range(2400)]
+    force = [0.4 * (-1) ** ((k + LASTS // 2) // LASTS) for k in range(1500)]
     for f in force:
         x.append(handle.counts() * 12.8e-6)
         handle.step(sign * f)
