@@ -78,13 +78,10 @@ static uint8_t why_not(const hl_core *core, const hl_place *place, uint16_t ever
     if (options & HL_OPTION_PASSIVE) {
         return HL_OK;
     }
-    if (core->heat > HL_HEAT_STANDS) {
-        return HL_RESULT_HOT;
+    if (!core->calibrated || !core->settings.wired) {
+        return core->calibrated ? HL_RESULT_NOT_WIRED : HL_RESULT_NOT_CALIBRATED;
     }
-    if (!core->calibrated) {
-        return HL_RESULT_NOT_CALIBRATED;
-    }
-    return !core->settings.wired ? HL_RESULT_NOT_WIRED : !core->homed ? HL_RESULT_NOT_HOMED : HL_OK;
+    return core->heat > HL_HEAT_STANDS ? HL_RESULT_HOT : !core->homed ? HL_RESULT_NOT_HOMED : HL_OK;
 }
 
 /* Take a period into use: everything that is counted in ticks. */

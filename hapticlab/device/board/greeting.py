@@ -60,7 +60,11 @@ def introduction(board, settings, T):
     day = str(settings.date)
     calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day[:4]}-{day[4:6]}-{day[6:]}"
     parts += [calibrated, f"|F| <= {min(settings.force_max, settings.force_full):.4g} N"]
-    return ", ".join(parts if settings.checked else [*parts, "motor sign not checked, so at most 0.5 N"])
+    if not settings.wired:
+        parts.append("wiring not confirmed, so the motor stays off (run `hapticlab calibrate`)")
+    elif not settings.checked:
+        parts.append("motor sign not checked, so at most 0.5 N")
+    return ", ".join(parts)
 
 
 def silent_fault(state, exchange):

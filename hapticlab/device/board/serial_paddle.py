@@ -205,8 +205,8 @@ class SerialPaddle(Paddle):
             if not passive:
                 check_margin(self._loaded.program if program is None else program)  # type: ignore[union-attr]
             self.clear()
-            if not passive and self.settings is not None:
-                self.home()
+            if not passive and self.settings is not None and self.settings.wired:
+                self.home()  # where the wiring is not confirmed the board says so, wherever its handle is
             with self._lock:
                 self._begin(program, every, OPTIONS["PASSIVE"] if passive else 0, min(force_max, 3e38))
 

@@ -409,7 +409,7 @@ class TestForce:
 @pytest.mark.wide
 def test_all_of_it_in_one_go():
     paddle = bench.paddle(wiring=-1, force_full=6.5, metres_per_count=-11.9e-6)
-    answers = WIRED | STOPS | YES | HOMING | tugged(swaying()) | on_a_scale()
+    answers = WIRED | STOPS | YES | HOMING | {"Let the handle rest": at(0.0)} | tugged(swaying()) | on_a_scale()
     person = bench.Scripted(paddle, answers)
     found = calibrate(paddle, person, date=TODAY)
     assert (found.checked, found.date) == (1, TODAY)
