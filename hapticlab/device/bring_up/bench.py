@@ -5,13 +5,13 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from ...errors import HapticlabError
+from ...errors import HapticlabError, PaddleError
 from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
-from ..board.homing import state_flag
 from ..board.serial_paddle import is_refusal
 from ..link.messages import HOST_SILENCE_MS, STATES
 from ..setup.connect import connect
+from ..setup.stored_settings import lead_home
 from . import forces, motor_off, stop_times
 from .about import about_board, about_settings
 from .limits import limits
@@ -167,16 +167,22 @@ def _motor_off(paddle):
     return "the motor is off" if state != STATES["RUN"] else "the board says that its motor is ON: switch the supply off"
 
 
-def _why_no_force(paddle):
-    """Return why a board gives no force now, or ""."""
-    if paddle.settings is None:
+def _why_no_force(bench):
+    """Return why a board gives no force now, or "" once the handle was led to both stops."""
+    if bench.paddle.settings is None:
         return "the board has no settings: run `hapticlab calibrate`"
-    return "" if state_flag(paddle.exchange, "HOMED") else "the board does not know where the handle is"
+    try:
+        lead_home(bench.paddle, bench.person)
+    except PaddleError as problem:
+        if not is_refusal(problem):
+            raise
+        return str(problem)
+    return ""
 
 
 def _findings(bench, name, measure):
     """Yield what one step finds; where the board or the package refuses it, that is what was found."""
-    why = _why_no_force(bench.paddle) if name in ON else ""
+    why = _why_no_force(bench) if name in ON else ""
     if why:
         yield Finding.skipped(name, why)
         return
