@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 from build_image import symbols
 from emulated import emulated_uno, image
-from emulator import BROWN_OUT, CYCLES_PER_SECOND, EXTERNAL
+from emulator import BROWN_OUT, EXTERNAL
 from five_scenes import pendulum
 
 import hapticlab as hl
@@ -106,24 +106,27 @@ FAULTS = {
 }
 
 
-def measure(fault):
+NOMINAL = partial(nominal, "hapkit")
+
+
+def measure(fault, emulated=emulated_uno, kept=NOMINAL, rest=0.2):
     """Put a fault into a running board; return the time until its motor was off [s], the Telemetry and the cause.
 
-    From the first duty of zero on the duty stays zero for 0.2 s, or the time is infinite.
+    From the first duty of zero on the duty stays zero for ``rest`` [s], or the time is infinite.
     """
-    settings = nominal("hapkit", **{"wired": 1, "checked": 1, "ident": 1, "date": 20261120, **fault.settings})
-    with emulated_uno(HAND, T=fault.period, settings=settings) as paddle:
+    settings = kept(**{"wired": 1, "checked": 1, "ident": 1, "date": 20261120, **fault.settings})
+    with emulated(HAND, T=fault.period, settings=settings) as paddle:
         paddle.start(fault.scene, check_fit=False)
         if fault.inject is not nothing:
             paddle.wait(0.1)
             assert paddle.loop.board.duty != 0, paddle.stop().fault
         begun = paddle.loop.board.cycle
         fault.inject(paddle)
-        last = paddle.exchange.now() + fault.within + 0.2
+        last = paddle.exchange.now() + fault.within + rest
         while paddle.exchange.now() < last:
             paddle.exchange.wait(lambda: paddle.exchange.now() >= last, 0.01)
         off = off_from(paddle.loop.board, begun)
-        return (off - begun) / CYCLES_PER_SECOND, paddle.stop() if fault.says else None
+        return (off - begun) / paddle.loop.board.hz, paddle.stop() if fault.says else None
 
 
 def off_from(board, begun):
@@ -136,8 +139,13 @@ def off_from(board, begun):
     return int(cycles[driven[-1] + 1] if len(driven) else cycles[0])
 
 
-if __name__ == "__main__":
+def print_table(faults, measured):
+    """Print what each fault took."""
     print(f"{'fault':<28}{'motor off after [ms]':>22}{'stated [ms]':>14}   said")
-    for name, fault in FAULTS.items():
-        taken, log = measure(fault)
+    for name, fault in faults.items():
+        taken, log = measured(fault)
         print(f"{name:<28}{1e3 * taken:>22.3f}{1e3 * fault.within:>14.1f}   {log.fault if log else 'a reset'}")
+
+
+if __name__ == "__main__":
+    print_table(FAULTS, measure)

@@ -151,6 +151,14 @@ class Pico:
         """Plug the cable in, or pull it out; the board keeps its supply."""
         self._set.append(("attach", on))
 
+    def listen(self, on):
+        """Let the computer ask for what the board sends, or be busy with something else."""
+        self._set.append(("listen", on))
+
+    def cut_power(self, operation, part):
+        """Take the supply away in an operation of the flash, 0 is the next one, after a part of its time."""
+        self._set.append(("cut", operation, part))
+
     def write(self, data):
         """Queue bytes for it, in packets of up to 64 from each call."""
         self._set.append(("out", bytes(data).hex()))

@@ -23,6 +23,7 @@ export class BootRom {
         this.violations = [];
         this.operations = 0;
         this.busy = null;
+        this.cut = null; // at which operation, counted from 0, and after what part of it the power goes
         chip.onReset.push((rp) => this.#start(rp));
     }
 
@@ -73,6 +74,10 @@ export class BootRom {
         if (name === "RP" && given >>> 28 !== 2) this.#note("RP from an address that is not RAM");
         const time = length / size * (name === "RE" ? ERASE : PROGRAM), begun = this.chip.clock.nanos;
         this.busy = { name, offset, length, data, begun, time };
+        if (this.cut && this.cut.operation === this.operations) {
+            this.chip.clock.createAlarm(() => this.powerOff()).schedule(time * this.cut.part);
+            this.cut = null;
+        }
         this.operations++;
         this.chip.idleUntil = begun + time;
         this.chip.clock.createAlarm(() => this.finish()).schedule(time);
@@ -85,11 +90,11 @@ export class BootRom {
         this.busy = null;
         const end = busy.offset + Math.floor(busy.length * part);
         for (let at = busy.offset; at < end; at++) chip.flash[at] = busy.data ? chip.flash[at] & busy.data[at - busy.offset] : 0xff;
-        if (part < 1 && end < chip.flash.length) chip.flash[end] &= 0x5a | chip.flash[end] & 0xa5 & (at => at * 37)(end); // a cell between
+        if (part < 1) chip.flash[end] &= 0xa5; // a byte of which some cells have changed
     }
 
     powerOff() {
-        if (this.busy) this.finish((this.chip.clock.nanos - this.busy.begun) / this.busy.time);
+        if (this.busy) this.finish(Math.min(0.999, (this.chip.clock.nanos - this.busy.begun) / this.busy.time));
         this.chip.halted = "off";
     }
 }

@@ -70,7 +70,10 @@ export class Chip {
             watchdog.reason = old.peripherals[0x40058].reason;
             watchdog.scratchData.set(old.peripherals[0x40058].scratchData);
         }
-        watchdog.onWatchdogTrigger = () => { this.pendingReset = WATCHDOG; };
+        watchdog.onWatchdogTrigger = () => {
+            watchdog.timer.enable = false; // it would come again at once, for ever
+            this.pendingReset = WATCHDOG;
+        };
         rp.peripherals[0x40064] = Object.assign(Object.create(rp.peripherals[0x40064]), {
             readUint32: (offset) => (offset === 8 ? CAUSES[cause] : 0),
             writeUint32() {},

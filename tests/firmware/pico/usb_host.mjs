@@ -16,6 +16,7 @@ export class UsbHost {
         this.chip = chip;
         this.attached = true;
         this.open = false;
+        this.listening = true; // the computer asks for what the board has to send
         this.received = []; // bytes for whoever has the port open
         this.packets = { in: 0, out: 0 };
         this.errors = [];
@@ -106,7 +107,7 @@ export class UsbHost {
     setLines(on, rate = 500000) {
         this.open = on;
         if (!this.configured) return;
-        this.request([0x21, 0x20, 0, 0, 0, 0, 7, 0], [rate & 255, rate >> 8 & 255, rate >> 16 & 255, rate >>> 24, 0, 0, 8]);
+        if (on) this.request([0x21, 0x20, 0, 0, 0, 0, 7, 0], [rate & 255, rate >> 8 & 255, rate >> 16 & 255, rate >>> 24, 0, 0, 8]);
         this.request([0x21, 0x22, on ? 3 : 0, 0, 0, 0, 0, 0]);
         this.#pump();
     }
@@ -115,6 +116,8 @@ export class UsbHost {
         for (let at = 0; at < bytes.length; at += PACKET) this.sending.push(bytes.slice(at, at + PACKET));
         this.#pump();
     }
+
+    listen(on) { this.listening = on; this.#pump(); }
 
     take() { const got = this.received; this.received = []; return got; }
 
@@ -185,8 +188,10 @@ export class UsbHost {
         if (this.ending || !this.attached || !this.pulled) return;
         this.current ??= this.requests.shift() ?? null;
         if (this.current && this.#step(this.current)) return;
-        const out = 2 * this.bulk.out + 1, into = 2 * this.bulk.in, canIn = this.configured && this.open && this.#armed(into);
-        const canOut = this.configured && this.sending.length && this.#armed(out);
+        const out = 2 * this.bulk.out + 1, into = 2 * this.bulk.in, 
+            canIn = this.configured && this.open && this.listening && this.#armed(into);
+        const asked = this.current || this.requests.length; // opening a port ends before anything is written to it
+        const canOut = this.configured && !asked && this.sending.length && this.#armed(out);
         if (canOut && !(canIn && this.last === "out")) {
             this.last = "out";
             this.#out(out, this.sending[0], () => { this.sending.shift(); this.packets.out++; });

@@ -24,6 +24,15 @@ class Serial(protocol_uno.Serial):
         self.loop.board.read()
         self.is_open = True
 
+    def read(self, size=1):
+        """Return ``size`` bytes, or those that came before the timeout. A board without power has no port."""
+        self._check()
+        board, wait = self.loop.board, protocol_uno.LONGEST_WAIT if self.timeout is None else self.timeout
+        self.loop.run_until(lambda: board.waiting >= size or board.halted, wait)
+        if board.halted and not board.waiting:
+            raise serial.SerialException(f"the device disconnected: {board.halted}")
+        return board.read(size)
+
     def close(self):
         """Leave the board running."""
         if self.is_open:
