@@ -10,6 +10,7 @@ import numpy as np
 from ..base.arguments import number
 from ..device.board.serial_paddle import SerialPaddle
 from ..errors import AnalysisError, PaddleError
+from .fit_result import Estimate
 from .handle_records import HandleRecord, identify
 from .identifying_forces import LEAD, Excitation, centring, designed
 from .paddle_fit import PaddleFit
@@ -39,6 +40,18 @@ class Identified(PaddleFit):
     """
 
     records: tuple[HandleRecord, ...] = ()
+
+    @property
+    def sensor_delay(self) -> Estimate:
+        """The lag of the sensor [s]: the part of the delay that the computation did not take, where the motor follows at once.
+
+        Raises
+        ------
+        AnalysisError
+            If the delay was not estimated.
+        """
+        found, own = self["delay"], float(np.mean([record.log.delay for record in self.records]))
+        return Estimate("sensor_delay", found.value - own, found.low - own, found.high - own, "s")
 
     def loaded(self, mass: float) -> tuple[HandleRecord, ...]:
         """The records as those of a handle with a known mass [kg] fixed to it; see :func:`identify`."""
