@@ -1,4 +1,4 @@
-"""The sensor's lag, told from the time that the computation takes: a paddle in simulation, and a board that measures its steps."""
+"""The lag of a sensor, told from the time of the computation: a paddle in simulation, and a board that measures its steps."""
 
 import pytest
 
