@@ -101,10 +101,10 @@ class TestGuide:
 
     def test_texts_that_a_user_may_read_are_those_of_the_package(self):
         said = "\n".join(
-            node.value
+            "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in getattr(node, "values", [node]))
             for path in (ROOT / "hapticlab" / "device").rglob("*.py")
             for node in ast.walk(ast.parse(path.read_text("utf-8")))
-            if isinstance(node, ast.Constant) and isinstance(node.value, str)
+            if isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
         )
         texts = [row[0].strip("`") for row in rows(sections(GUIDE)["Symptoms"].split("### Texts")[1])]
         assert len(texts) > 10 and [text for text in texts if text not in said] == []
