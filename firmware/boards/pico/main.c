@@ -131,7 +131,6 @@ void pico_broken(void)
 int main(void)
 {
     pico_stack_guard = GUARD;
-    chip_begin();
     reset_cause = look_at_reset();
     board_period(&pico_core, HL_IDLE_PERIOD_US);
     hl_core_start(&pico_core);

@@ -47,9 +47,6 @@ static inline void pin_rest(uint8_t pin)
     pin_function(pin, FUNCTION_NONE, PAD_PULL_DOWN);
 }
 
-/* start.c: clocks, and every block of the chip that is used out of its reset */
-void chip_begin(void);
-
 /* sensor.c: start a conversion; board_reading takes its result */
 void sensor_sample(void);
 

@@ -56,7 +56,7 @@ enum {
 #define IO_CTRL(pin) (0x40014004 + 8 * (uint32_t)(pin))
 #define PADS(pin) (0x4001c004 + 4 * (uint32_t)(pin))
 enum { FUNCTION_SPI = 1, FUNCTION_PWM = 4, FUNCTION_SIO = 5, FUNCTION_NONE = 31 };
-enum { PAD_FLOATING = 0x52, PAD_PULL_DOWN = 0x56, PAD_PULL_UP = 0x5a, PAD_ANALOG = 0x90 }; /* 4 mA, Schmitt trigger */
+enum { PAD_PULL_DOWN = 0x56, PAD_PULL_UP = 0x5a, PAD_ANALOG = 0x90 }; /* 4 mA, Schmitt trigger */
 #define SIO_OUT_SET 0xd0000014
 #define SIO_OUT_CLEAR 0xd0000018
 #define SIO_OE_SET 0xd0000024

@@ -1,4 +1,4 @@
-/* From reset to main: pins at rest first, the image into RAM; then clocks. */
+/* From reset to main: pins at rest first, then clocks, then the image into RAM, which takes 20 ms at 125 MHz. */
 #include "pico.h"
 
 extern uint32_t pico_stack_top[], pico_code[], pico_code_end[], pico_bss[], pico_bss_end[];
@@ -21,6 +21,7 @@ enum { PLL_POWER = 4, PLL_TIMES = 8, PLL_BY = 12, PLL_OFF = 1 << 5 | 1 << 0, PLL
 enum { PLLS = RESET_PLL_SYS | RESET_PLL_USB };
 enum { BLOCKS = RESET_ADC | RESET_IO | RESET_PADS | RESET_PIO0 | RESET_PWM | RESET_SPI0 | RESET_TIMER | RESET_USB };
 enum { CLOCK_ON = 1 << 11, TICK_ON = 1 << 9 };
+#define IN_FLASH __attribute__((section(".start"))) /* until the copy is made */
 #define STABLE (UINT32_C(1) << 31) /* of XOSC_STATUS, and of a PLL's first register */
 
 /* Where boot2 looks for it, with as much as a copy needs. */
@@ -35,27 +36,8 @@ __attribute__((section(".vectors.ram"), used)) static const vectors ram_vectors 
     {pico_tick, BROKEN_7, BROKEN_7, BROKEN_7, pico_broken, pico_broken, pico_broken, pico_broken},
 };
 
-/* In flash. A reset of pins and PWM comes first: whatever ran before, every pin is an input that is pulled low. */
-__attribute__((section(".start"), used, noreturn)) void pico_reset(void)
-{
-    SET_BITS(RESETS) = BLOCKS;
-    /* volatile: memcpy, which a compiler would call, is not there yet */
-    const volatile uint32_t *from = pico_code_load;
-    for (volatile uint32_t *to = pico_code; to < pico_code_end;) {
-        *to++ = *from++;
-    }
-    for (volatile uint32_t *to = pico_bss; to < pico_bss_end;) {
-        *to++ = 0;
-    }
-    REGISTER(VECTOR_TABLE) = (uint32_t)(uintptr_t)&ram_vectors;
-    int (*volatile go)(void) = main; /* too far for a branch */
-    go();
-    for (;;) {
-    }
-}
-
 /* Multiply the crystal's 12 MHz, divide by both. */
-static void pll_begin(uint32_t pll, uint32_t times, uint32_t by, uint32_t and_by)
+IN_FLASH static void pll_begin(uint32_t pll, uint32_t times, uint32_t by, uint32_t and_by)
 {
     REGISTER(pll) = 1;
     REGISTER(pll + PLL_TIMES) = times;
@@ -66,7 +48,7 @@ static void pll_begin(uint32_t pll, uint32_t times, uint32_t by, uint32_t and_by
     CLEAR_BITS(pll + PLL_POWER) = PLL_OUTPUT_OFF;
 }
 
-static void blocks_begin(uint32_t blocks)
+IN_FLASH static void blocks_begin(uint32_t blocks)
 {
     SET_BITS(RESETS) = blocks;
     CLEAR_BITS(RESETS) = blocks;
@@ -74,7 +56,7 @@ static void blocks_begin(uint32_t blocks)
     }
 }
 
-static void clock_select(uint32_t control, uint32_t selected, uint32_t source)
+IN_FLASH static void clock_select(uint32_t control, uint32_t selected, uint32_t source)
 {
     REGISTER(control) = source;
     while (REGISTER(selected) != UINT32_C(1) << source) {
@@ -82,7 +64,7 @@ static void clock_select(uint32_t control, uint32_t selected, uint32_t source)
 }
 
 /* 125 MHz for the processor, PWM and SPI, 48 MHz for USB and ADC, 1 MHz for timer and watchdog. */
-void chip_begin(void)
+IN_FLASH static void chip_begin(void)
 {
     REGISTER(XOSC_CTRL) = XOSC_12_MHZ;
     REGISTER(XOSC_STARTUP) = 47; /* 1 ms, in units of 256 periods */
@@ -100,4 +82,24 @@ void chip_begin(void)
     REGISTER(CLOCK_ADC_CTRL) = CLOCK_ON;
     REGISTER(WATCHDOG_TICK) = TICK_ON | 12;
     blocks_begin(BLOCKS);
+}
+
+/* A reset of pins and PWM comes first: whatever ran before, every pin is an input that is pulled low. */
+IN_FLASH __attribute__((used, noreturn)) void pico_reset(void)
+{
+    SET_BITS(RESETS) = BLOCKS;
+    chip_begin();
+    /* volatile: memcpy, which a compiler would call, is not there yet */
+    const volatile uint32_t *from = pico_code_load;
+    for (volatile uint32_t *to = pico_code; to < pico_code_end;) {
+        *to++ = *from++;
+    }
+    for (volatile uint32_t *to = pico_bss; to < pico_bss_end;) {
+        *to++ = 0;
+    }
+    REGISTER(VECTOR_TABLE) = (uint32_t)(uintptr_t)&ram_vectors;
+    int (*volatile go)(void) = main; /* too far for a branch */
+    go();
+    for (;;) {
+    }
 }
