@@ -1,8 +1,10 @@
 """Settings onto a board, never unasked: shown, agreed to, written, read back, compared."""
 
+from ...compiler.boards.board_records import BOARDS
 from ...errors import LinkError, PaddleError
 from ..board.homing import state_flag
 from ..board.upload import read_settings, upload
+from ..wiring import Wiring, require_possible
 from .person import agrees
 
 #: s: the longest wait for a motor that is taken to be warm, and from one look to the next
@@ -27,9 +29,14 @@ def store(paddle, settings):
 
     Raises
     ------
+    PaddleError
+        If the board cannot do their wiring: nothing is sent.
     LinkError
         If the board refuses, or keeps anything else than was sent.
     """
+    board = BOARDS.get(paddle.board["board"])
+    if board is not None and board.pins is not None:
+        require_possible(Wiring.of(settings), board)
     upload(paddle.exchange, "SETTINGS", settings.to_bytes())
     kept = read_settings(paddle.exchange)
     if kept is None or kept.to_bytes() != settings.to_bytes():

@@ -7,7 +7,7 @@ import workbench as bench
 from workbench import STOP, WIRED
 
 import hapticlab as hl
-from hapticlab.device.board.settings import Settings, changed, nominal
+from hapticlab.device.board.settings import Settings, changed, nominal, pin_word
 from hapticlab.device.link.messages import SETTINGS_STRUCT
 from hapticlab.device.setup import doctor_checks, stored_settings, wiring_check
 from hapticlab.device.setup.built import ask_built
@@ -210,3 +210,12 @@ def test_a_weaker_motor_that_is_taken_to_be_warm_is_waited_for():
     stored_settings.let_cool(paddle, person)
     assert "takes the motor to be warm" in person.words
     assert paddle.state()["heat"] <= 1 and 25 < paddle.exchange.now() - begun < 43
+
+
+def test_a_wiring_that_the_board_cannot_do_is_never_sent(monkeypatch):
+    paddle = bench.paddle(store=HAPKIT.to_bytes())
+    paddle.board["board"] = "uno"
+    monkeypatch.setattr(stored_settings, "upload", lambda *_: pytest.fail("sent"))
+    impossible = changed(HAPKIT, motor_pins=pin_word(9, 8), wired=0, checked=0)
+    with pytest.raises(PaddleError, match="PWM on D9: an Uno has PWM on D3, D5, D6, D11. Move this wire to one of them."):
+        stored_settings.store(paddle, impossible)
