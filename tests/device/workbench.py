@@ -142,6 +142,7 @@ def led_to_the_right(person):
 
 #: a person whose Hapkit is wired as it should be
 WIRED = {
+    "supply of the motor OFF": lambda person: None,
     "Which paddle is built": "hapkit",
     "Move the handle to the LEFT stop, let it rest": at(-STOP - 0.005),
     "slowly to the RIGHT stop, within": led_to_the_right,

@@ -78,6 +78,8 @@ class PractisingPerson(Person):
             answer = "88"  # mm, with a ruler
         elif "scale show" in question:
             answer = self.weigh()
+        elif question.startswith("Switch the supply of the motor OFF"):
+            pass
         elif question.startswith("Let the handle rest"):
             self.move(0.0)
         elif not question.startswith("Press Enter, then move the handle"):  # of a doctor, who asks for nothing else

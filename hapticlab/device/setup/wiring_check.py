@@ -43,11 +43,11 @@ def check_wiring(paddle, person, ident=0):
     bool
         Whether the wiring is confirmed.
     """
+    person.ask("Switch the supply of the motor OFF, leave it off, and press Enter. The sensor is checked first, without a force.")
     build = ask_built(person, board_with_pins(paddle.board["board"]))
     show(person, build)
     if not _unconfirmed(paddle, person, build, ident):
         return False
-    person.say("Switch the supply of the motor OFF and leave it off. The sensor is checked first, and the motor gives no force.")
     for _ in range(TRIES):
         found = check_sensor(paddle, person)
         person.say(f"\n{found}")

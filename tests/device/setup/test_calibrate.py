@@ -109,7 +109,7 @@ class TestStored:
     def test_a_new_board_begins_with_its_wiring_if_agreed(self):
         paddle = bench.paddle()
         assert paddle.settings is None
-        refusing = bench.Scripted(paddle, {"Which paddle is built": "hapkit", "Store these settings": "no"})
+        refusing = bench.Scripted(paddle, WIRED | {"Store these settings": "no"})
         assert calibrate(paddle, refusing, date=TODAY) is None
         assert set(paddle.exchange.port.board.store[: SETTINGS_STRUCT.size]) == {0xFF}
         found = calibrate(paddle, bench.Scripted(paddle, WIRED | STOPS | YES), date=TODAY, only="stops")
