@@ -18,7 +18,7 @@ class Rp2040:
     def __init__(self):
         elf = image().with_suffix(".elf")
         self.address = build_image.elf_symbols(elf) | {"arena": FREE, "program": FREE + ARENA}
-        self.board = Pico(flash=b"\xff" * 4096)
+        self.chip = Pico(flash=b"\xff" * 4096)
         for _, data, at, _ in build_image.segments(elf):
             assert at < 0x2000_0000 or at + len(data) <= FREE
             if data and at >= 0x2000_0000:
@@ -28,14 +28,14 @@ class Rp2040:
         return self.address[name]
 
     def write(self, address, data):
-        self.board.poke(address, data)
+        self.chip.poke(address, data)
 
     def read(self, address, count):
-        return self.board.peek(address, count)
+        return self.chip.peek(address, count)
 
     def call(self, name, *arguments):
         """Call a function; return its result's low byte and its cycles."""
-        found = self.board._ask("call", pc=self.address[name], given=[int(a) for a in arguments])
+        found = self.chip._ask("call", pc=self.address[name], given=[int(a) for a in arguments])
         return found["result"] & 255, found["cycles"]
 
     def verify(self, place, size, registers, capacity):
@@ -44,7 +44,7 @@ class Rp2040:
     def rows(self, name, arguments, to, rows, source, count):
         """Call a function once a row of bytes written to ``to``; return bytes read from ``source``, and cycles."""
         rows = np.ascontiguousarray(rows, np.uint8)
-        found = self.board._ask(
+        found = self.chip._ask(
             "rows", pc=self.address[name], given=[int(a) for a in arguments], to=to, size=rows.shape[1],
             times=len(rows), rows=rows.tobytes().hex(), source=source, count=count,
         )  # fmt: skip

@@ -14,7 +14,7 @@ from whole_step import OVERHEAD, springs
 import hapticlab as hl
 from hapticlab.compiler.boards.cost import SEARCH_MARGIN, tables
 
-TICKS = 300
+TICKS = 160
 HAND = hl.Hand(m=0.1, b=2, k=200, push=1.5)
 SETS = 30
 HZ, CLOCK = 125e6, 1e-6  # of the processor; what the board's own clock counts in [s]

@@ -10,6 +10,7 @@ from cortex import Cortex
 from five_scenes import SCENES, compiled, handle
 from measure_costs import EFFORT, as_values, awkward, awkward_bits, measure, overheads, program_of
 from pico_bench import Rp2040
+from pico_step import measure_pico_step
 from random_programs import random_program, random_rows
 from whole_step import measure_step
 
@@ -140,6 +141,15 @@ def test_the_rest_of_a_step_and_a_frame_are_what_the_table_says():
         assert answer[0] <= 1.1 * committed["answers"][name][0]
     assert found["heat"] <= 1.1 * committed["heat"]
     assert found["sent_byte"] <= committed["sent_byte"] and found["received_byte"] <= committed["received_byte"]
+
+
+@pytest.mark.skipif(bool(pico_emulator.missing()), reason=str(pico_emulator.missing()))
+@pytest.mark.wide
+def test_the_rest_of_a_step_on_the_pico_is_what_the_table_says():
+    found, committed = measure_pico_step(), tables()["pico"]
+    assert found["step"][0] == pytest.approx(committed["step"][0], rel=0.05)
+    assert all(new <= 1.05 * old for new, old in zip(found["step"][1:], committed["step"][1:], strict=True))
+    assert found["frame"][1] == pytest.approx(committed["frame"][1], rel=0.1) and found["late"] <= committed["late"]
 
 
 @needs_uno
