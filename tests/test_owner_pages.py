@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from faults import FAULTS as FAULTS_PUT_IN
+from pico_faults import PICO_FAULTS
 
 from hapticlab.device.board.streaming import LEASH
 from hapticlab.device.bring_up.steps import table
@@ -80,12 +81,13 @@ class TestSafety:
             named.add(match[2])
         assert named == set(stated)
 
-    def test_measured_times_are_of_every_fault_and_below_what_is_stated(self, pages, stated):
-        found = {row[0]: row[1:] for row in rows(pages.block(pages.SAFETY, "stop times"))}
-        assert list(found) == list(stated), "python tests/benchmarks/owner_pages.py --measure writes them"
-        for name, (said, *times) in found.items():
-            assert said == stated[name]
-            assert times and all(0 <= float(time.split()[0]) <= float(said.split()[0]) for time in times)
+    @pytest.mark.parametrize("board, table", [("Uno", FAULTS_PUT_IN), ("Pico", PICO_FAULTS)], ids=["Uno", "Pico"])
+    def test_measured_times_are_of_every_fault_and_below_what_is_stated(self, pages, board, table):
+        found = {name: times for name, *times in rows(pages.block(pages.SAFETY, f"stop times of the {board}"))}
+        assert list(found) == list(table), "python tests/benchmarks/owner_pages.py --measure writes them"
+        for name, (said, time) in found.items():
+            assert said == pages.stated(table[name])
+            assert 0 <= float(time.split()[0]) <= float(said.split()[0])
 
     def test_forces_speeds_and_energies_are_those_of_the_settings(self, pages):
         assert pages.block(pages.SAFETY, "profiles") == pages.profile_rows()

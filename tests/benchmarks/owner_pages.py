@@ -65,21 +65,17 @@ def profile_rows():
     return "\n".join(rows) + "\n"
 
 
-def stop_rows():
-    """Measure every fault on the emulated boards, and return the table."""
-    sys.path.insert(0, str(ROOT / "tests" / "firmware"))
-    import faults
-
-    rows = ["| fault | stated | found on the emulated Uno |", "| --- | --- | --- |"]
-    for name, fault in faults.FAULTS.items():
-        taken, _ = faults.measure(fault)
+def stop_rows(faults, measure):
+    """Measure faults on an emulated board, and return the table."""
+    rows = ["| fault | stated | found |", "| --- | --- | --- |"]
+    for name, fault in faults.items():
+        taken, _ = measure(fault)
         rows.append(f"| {name} | {stated(fault)} | {1e3 * taken:.3f} ms |")
     return "\n".join(rows) + "\n"
 
 
 def scope_rows():
     """Watch the motor's pins of the emulated Uno for each paddle that people build, and return what a scope would show."""
-    sys.path.insert(0, str(ROOT / "tests" / "firmware"))
     import wired
     from emulated import emulated_uno
 
@@ -88,7 +84,8 @@ def scope_rows():
         if build.board != "uno":
             continue
         wiring = build.wiring
-        with emulated_uno(wired.HAND, settings=wired.settings_of(wiring)) as paddle:
+        settings = wired.of(wiring.sensor, wiring.drive, wiring.motor_pins, wiring.sensor_pins, wiring.carrier)
+        with emulated_uno(wired.HAND, settings=settings) as paddle:
             paddle.start(wired.SPRING)
             paddle.wait(0.5)
             board = paddle.loop.board
@@ -120,7 +117,12 @@ def main():
     write_block(GUIDE, "steps of the bench", table())
     write_block(SAFETY, "profiles", profile_rows())
     if options.measure:
-        write_block(SAFETY, "stop times", stop_rows())
+        sys.path.insert(0, str(ROOT / "tests" / "firmware"))
+        import faults
+        import pico_faults
+
+        write_block(SAFETY, "stop times of the Uno", stop_rows(faults.FAULTS, faults.measure))
+        write_block(SAFETY, "stop times of the Pico", stop_rows(pico_faults.PICO_FAULTS, pico_faults.measure))
         write_block(GUIDE, "scope", scope_rows())
 
 
