@@ -24,7 +24,7 @@ def missing():
     """Why there can be no emulated Pico here, or None."""
     if not shutil.which("node"):
         return "the emulated Pico needs node 18 or newer"
-    if not (HERE / "node_modules" / "rp2040js").is_dir():
+    if not (HERE / "node_modules" / "rp2040js" / "package.json").is_file():
         return f"the emulated Pico needs rp2040js: npm ci --prefix {HERE.relative_to(HERE.parents[2]).as_posix()}"
     return None
 
