@@ -28,8 +28,7 @@ def mass_spring_damper() -> Scene:
     handle transmits the ringing of the mass on k and K together, sqrt((k + K)/m).
 
     Teaches natural frequency, damping ratio and impedance; any textbook of system dynamics, such as K. Ogata, *System
-    Dynamics*, ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 800 Hz,
-    or ``method="exact", live=""`` at 1000 Hz.
+    Dynamics*, ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 1000 Hz.
 
     Returns
     -------
@@ -88,7 +87,7 @@ def tuned_absorber() -> Scene:
 
     Teaches the absorber's null, the two resonances beside it, and why b_2 > 0 trades the null for width; J. P. Den
     Hartog, *Mechanical Vibrations*, sec. 3.2. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms, to be passive but for F_0,
-    which feeds energy. On an Uno: semi-implicit Euler at 400 Hz.
+    which feeds energy. On an Uno: semi-implicit Euler at 500 Hz.
 
     Returns
     -------

@@ -108,21 +108,21 @@ def _uno(method, rate):
 
 SEMI = "semi_implicit_euler"
 CATALOGUE = Catalogue((
-    Entry(bodies.mass_spring_damper, None, 0.21, uno=_uno(SEMI, 800)),
+    Entry(bodies.mass_spring_damper, None, 0.21, uno=_uno(SEMI, 1000)),
     Entry(bodies.two_masses, None, 0.21, uno=_uno(SEMI, 800)),
-    Entry(bodies.tuned_absorber, None, 0.21, uno=_uno(SEMI, 400)),
+    Entry(bodies.tuned_absorber, None, 0.21, uno=_uno(SEMI, 500)),
     Entry(
         pendulums.pendulum_on_the_handle, None, 0.21, uno=_uno(SEMI, 500), stored=0.0033
     ),
     Entry(pendulums.cart_pole, None, 0.21, uno=_uno(SEMI, 500), stored=0.2944),
-    Entry(mechanisms.gears, mechanisms.draw_gears, 0.21, uno=_uno(SEMI, 500)),
-    Entry(mechanisms.slider_crank, mechanisms.draw_slider_crank, 0.21, uno=_uno(SEMI, 400)),
-    Entry(mechanisms.four_bar, mechanisms.draw_four_bar, 0.21, uno=_uno(SEMI, 250) | {"hold": "foh"}),
+    Entry(mechanisms.gears, mechanisms.draw_gears, 0.21, uno=_uno(SEMI, 800)),
+    Entry(mechanisms.slider_crank, mechanisms.draw_slider_crank, 0.21, uno=_uno(SEMI, 500)),
+    Entry(mechanisms.four_bar, mechanisms.draw_four_bar, 0.21, uno=_uno(SEMI, 400) | {"hold": "foh"}),
     Entry(mechanisms.rolling, mechanisms.draw_rolling, 0.21, uno=_uno(SEMI, 500)),
     Entry(contacts.ball_on_the_paddle, None, 0.21, stored=0.0236),
     Entry(contacts.stick_slip, None, 0.21),
     Entry(surfaces.detents, surfaces.draw_detents, 0.19, uno=_uno(SEMI, 1000)),
-    Entry(surfaces.texture, surfaces.draw_texture, 0.28, uno=_uno(SEMI, 800)),
+    Entry(surfaces.texture, surfaces.draw_texture, 0.28, uno=_uno(SEMI, 1000)),
     Entry(surfaces.virtual_fixture, surfaces.draw_virtual_fixture, 0.2, uno=_uno(SEMI, 1000)),
     Entry(surfaces.buckling_beam, surfaces.draw_buckling_beam, 0.17, uno=_uno(SEMI, 1000), stored=0.0102),
 ))  # fmt: skip

@@ -22,7 +22,7 @@ def gears() -> Scene:
     is nine times the flywheel.
 
     Teaches transformers and reflected inertia; D. C. Karnopp, D. L. Margolis and R. C. Rosenberg, *System Dynamics*,
-    ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 500 Hz.
+    ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 800 Hz.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def slider_crank() -> Scene:
     towards it without limit.
 
     Teaches kinematic constraint, singular configuration, the flywheel; R. L. Norton, *Design of Machinery*, ch. 4 and
-    13. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 400 Hz.
+    13. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 500 Hz.
 
     Returns
     -------
@@ -137,7 +137,7 @@ def four_bar() -> Scene:
     (dpsi/dtheta = 0). Lengths by Grashof, a + d < b + c: the crank turns fully, the rocker swings.
 
     Teaches loop closure, mobility, mechanical advantage; R. L. Norton, *Design of Machinery*, ch. 4 and 6. Needs
-    b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 250 Hz, hold="foh".
+    b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 400 Hz, hold="foh".
 
     Returns
     -------

@@ -69,7 +69,7 @@ def texture() -> Scene:
 
     Teaches the lateral-force illusion, spatial against temporal frequency (v/p, sampled at 1/T: keep v below p/(2 T)),
     and why fine textures buzz; M. Minsky et al., *Feeling and seeing*, SI3D 1990. Needs b >= pi A T (1/p_1 + 1/p_2) =
-    0.27 N s/m at T = 1 ms. On an Uno: 800 Hz.
+    0.27 N s/m at T = 1 ms. On an Uno: 1000 Hz.
 
     Returns
     -------

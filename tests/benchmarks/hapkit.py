@@ -140,7 +140,7 @@ def measure_firmware(T, seconds):
 def fastest(seconds, worst):
     """Return the figures at the least T, in steps of 10 us, at which, as at all longer ones, everything fits."""
     found = None
-    for us in range(math.ceil(worst * 1e5) * 10 + 100, 249, -10):
+    for us in range(math.ceil(worst * 1e5) * 10 + 300, 249, -10):
         shorter = measure_firmware(us * 1e-6, seconds)
         if not shorter:
             break

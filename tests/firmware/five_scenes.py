@@ -1,15 +1,10 @@
-"""Five scenes of growing cost, as a student writes them, and the motion of the handle that drives them.
-
-``python tests/firmware/five_scenes.py`` prints what of them fits which board.
-"""
+"""Five scenes of growing cost, as a student writes them, and the motion of the handle that drives them."""
 
 import numpy as np
 import sympy as sp
 
 import hapticlab as hl
 from hapticlab import t, v, x
-from hapticlab.compiler.boards.board_fit import table
-from hapticlab.compiler.boards.cost import BOARDS
 
 MOVE = 0.01  # how far the handle moves [m]
 
@@ -76,8 +71,3 @@ def handle(ticks, T=1e-3, seed=1):
     angle = np.array([3.0, 7.0, 11.0, 17.0, 29.0]) * (np.arange(ticks) * T)[:, None] + phase
     position = 0.4 * MOVE * np.sin(angle).sum(1)
     return np.round(position / 13e-6)[:, None] * 13e-6
-
-
-if __name__ == "__main__":
-    for board in (name for name, b in BOARDS.items() if b.hz):
-        print(table([make() for make in SCENES], board), end="\n\n")
