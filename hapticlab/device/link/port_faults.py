@@ -43,7 +43,7 @@ def absence_words(seconds):
 def slept(url, seconds):
     """Return the PortError of a port that went while this program did not run."""
     return PortError(
-        f"{url}: HOST_SILENT: {absence_words(seconds).lower()}, and its port is gone. The board switched its motor off after "
+        f"{url}: HOST_SILENT: {absence_words(seconds).lower()}, and the port is gone. The board switched its motor off after "
         f"{HOST_SILENCE_MS} ms without the computer. Connect again; if there is no answer, plug the board in again",
         "slept",
     )

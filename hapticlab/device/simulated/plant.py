@@ -19,6 +19,8 @@ from .transition import PHI, transition
 WHOLE = 1e-9
 #: where in a period the sensor's reading lies: nowhere, before the force changes, at that instant, after it
 NOWHERE, BEFORE, AT, AFTER = range(4)
+#: the parts of a period in which the force changes and a reading lies, in their order
+PARTS = {BEFORE: ("_unseen", "_before", "_after"), AFTER: ("_before", "_unseen", "_after")}
 
 
 @dataclass(frozen=True)
@@ -61,9 +63,12 @@ class Plant:
         """Name the parts of a period, before and after the force changes; "_unseen" ends with the sensor's reading."""
         if not self.split:
             return ("_unseen", "") if self.seen else ("",)
-        return {BEFORE: ("_unseen", "_before", "_after"), AFTER: ("_before", "_unseen", "_after")}.get(
-            self.seen, ("_before", "_after")
-        )
+        return PARTS.get(self.seen, ("_before", "_after"))
+
+    @property
+    def older(self):
+        """How many of the parts the older force acts in."""
+        return self.split + (self.seen == BEFORE)
 
     @property
     def readings(self):
@@ -108,18 +113,17 @@ class Plant:
             Position at the sensor's reading and where the force changes, then position and velocity at the next sample.
         """
         x_seen = x_switch = x
-        newer = not self.split
-        for part in self.parts:
-            if part == "_after" or (part == "_unseen" and self.seen == AFTER and self.split):
-                x_switch, newer = (x_switch if newer else x), True
-            F = F_after if newer else F_before
+        for position, part in enumerate(self.parts):
+            if position == self.older:
+                x_switch = x
+            F = F_before if position < self.older else F_after
             u = p["plant.push"] - F if self.push else -F
             u = u + shake if self.shake else u
             d = None
             if self.drag:
                 u = u + p["plant.b_hand"] * rate
             if self.spring and self.ramp:
-                ahead = intent if part == self.parts[0] else intent + p[f"plant.offset{part}"] * rate
+                ahead = intent + p[f"plant.offset{part}"] * rate if position else intent
                 u, d = u + p["plant.k"] * ahead, p["plant.k"] * rate
             x, v = (self._slide if self.coulomb else self._glide)(p, part, x, v, u, d)
             x_seen = x if part == "_unseen" else x_seen
