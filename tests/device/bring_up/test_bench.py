@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from emulated import emulated_uno
-from emulator import missing
+from emulator import CYCLES_PER_SECOND, missing
 
 import hapticlab as hl
 from hapticlab.device.board.serial_paddle import SerialPaddle
@@ -99,9 +99,19 @@ class TestWhole:
     def test_the_emulated_uno(self, monkeypatch):
         monkeypatch.setattr(motor_off, "LOOP", 0.5)
         only(monkeypatch, "link", "switch", "host silent", "STOP", "Ctrl-C", "not finite", "over-speed", "cable", "lag")
+        silent_from = []
+
+        def fault(shared, seconds, wait=walk.Bench.fault):
+            silent_from.append(shared.paddle.loop.board.cycle)
+            return wait(shared, seconds)
+
+        monkeypatch.setattr(walk.Bench, "fault", fault)
         with emulated_uno() as paddle:
             report = bench(paddle, PractisingOwner(UnoPort.on(paddle)))
+            cycles, duties = paddle.loop.board.duties()
         assert verdicts(report) == {}, str(report)
+        off = cycles[(cycles > silent_from[0]) & (duties == 0)][0]  # at the pins, from the computer's last word
+        assert (off - silent_from[0]) / CYCLES_PER_SECOND == pytest.approx(report["host silent", "stop time"].found, abs=3e-3)
         assert report["lag", "force to motion"].found == pytest.approx(report["lag", "force to motion"].low + 0.5e-3, abs=0.3e-3)
         assert 0 < report["link", "step, worst"].found <= report["link", "step, worst"].high
         assert "uno.hex, CRC-32" in report.about["image that comes with this package"]
