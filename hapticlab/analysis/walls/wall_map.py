@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: what a map may be over beside K, and its unit
 OTHERS = {
     "B": "N s/m", "T": "s", "delay": "s", "m": "kg", "b": "N s/m", "coulomb": "N", "counts_per_metre": "1/m",
-    "hand_m": "kg", "hand_b": "N s/m",
+    "hand_m": "kg", "hand_b": "N s/m", "sensor_delay": "s",
 }  # fmt: skip
 #: rows at which theory is computed, exactly; between them its lines are straight
 ROWS = 41
@@ -51,7 +51,7 @@ def wall_map(
         A scene of its own with its stiffness unbound and its boundary at 0 has regions, and no line of passivity; a name
         draws the theory too.
     over : ("K", other)
-        other is one of B, T, delay, m, b, coulomb, counts_per_metre, hand_m, hand_b.
+        other is one of B, T, delay, sensor_delay, m, b, coulomb, counts_per_metre, hand_m, hand_b.
     **given
         The axes by their names, arrays of SI values; without one a range of ``points`` = 100 values that shows the limits,
         or, of a scene without ``linear=``, where simulated contacts cease to come to rest.
@@ -277,6 +277,7 @@ def _range(paddle, name, points):
         "B": lambda: np.linspace(-1.5 * b, 3 * b, points),
         "T": lambda: np.geomspace(paddle.T / 4, paddle.T * 4, points),
         "delay": lambda: np.linspace(0, 3 * paddle.T, points),
+        "sensor_delay": lambda: np.linspace(0, 3 * paddle.T, points),
         "m": lambda: np.geomspace(paddle.m / 4, paddle.m * 4, points),
         "b": lambda: np.linspace(0, 4 * b, points),
         "coulomb": lambda: np.linspace(0, 2 * paddle.coulomb or 0.2, points),

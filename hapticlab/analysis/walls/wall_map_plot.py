@@ -11,6 +11,7 @@ COLOURS = ("#eef4d4", "#a9cfa0", "#4f93a8", "#2b2f5c")
 #: what an axis of a map alone may be
 LABELS = {
     "hand_m": "mass of the hand", "hand_b": "damping of the hand", "coulomb": "Coulomb friction", "counts_per_metre": "encoder",
+    "sensor_delay": "lag of the sensor",
 }  # fmt: skip
 SHADES = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in COLOURS])
 LINES = {

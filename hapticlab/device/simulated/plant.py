@@ -8,6 +8,7 @@ program serves every mass, damping and period, and lanes may sweep them.
 """
 
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
@@ -239,7 +240,7 @@ def values(paddle):
     if hand is not None:
         resting = 0.0 if hand.moves or hand.intent is None else hand.k * hand.intent
         found |= {"plant.push": hand.push + resting, "plant.k": hand.k, "plant.b_hand": hand.b}
-        begins = np.cumsum(part_lengths(paddle)[:-1], axis=0) if len(plant.parts) > 1 else ()
+        begins = accumulate(part_lengths(paddle)[:-1])
         found |= {f"plant.offset{part}": begin for part, begin in zip(plant.parts[1:], begins, strict=True)}
     for part, length in zip(plant.parts, part_lengths(paddle), strict=True):
         if plant.coulomb:

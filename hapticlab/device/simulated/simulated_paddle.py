@@ -240,7 +240,8 @@ class SimulatedPaddle(Paddle):
     def structure(self) -> tuple[Any, ...]:
         """What decides the linked program, as against its parameter values; compare with ==."""
         encoder = self.rounding if self.counts_per_metre is not None else None
-        return self.plant, encoder, self.noise > 0, self.force_max is not None, is_distorted(self)
+        exact = self.velocity == "measured"
+        return self.plant, encoder, self.noise > 0, self.force_max is not None, is_distorted(self), exact
 
     def plant_values(self, x: Number = 0.0, v: Number = 0.0) -> tuple[float, ...]:
         """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""

@@ -87,12 +87,32 @@ def test_off_it_costs_nothing():
 
 
 def test_lanes_and_sweeps_have_it():
-    paddle = SimulatedPaddle(m=0.05, b=1.0, T=T)
-    lags = np.array([0.0, 3e-4, 1e-3, 1.7e-3])
-    swept = hl.sweep(hl.wall(), paddle, 0.3, metric="peak_force", k=150, x_o=0, v=0.1, sensor_delay=lags)
-    alone = [SimulatedPaddle(m=0.05, b=1.0, T=T, sensor_delay=lag) for lag in lags]
-    peaks = [np.abs(one.run(hl.wall()(k=150, x_o=0), duration=0.3, v=0.1).F).max() for one in alone]
-    assert swept.values.ravel() == pytest.approx(peaks, rel=1e-12) and len(set(peaks)) == 4
+    """Bit for bit what each paddle gives alone, also where a reading moves over the force's change from lane to lane."""
+    paddle = SimulatedPaddle(**BASE)
+    lags, masses, delays = np.array([0.0, 4e-4, 9e-4, 1.7e-3]), np.array([0.03, 0.05]), np.array([0.0, 3e-4, 1.6e-3])
+    axes = {"sensor_delay": lags, "m": masses, "delay": delays}
+    swept = hl.sweep(hl.wall(), paddle, 0.1, metric="peak_force", k=300, x_o=0.001, v=0.1, **axes)
+    for at in np.ndindex(swept.values.shape):
+        own = {name: axes[name][k] for name, k in zip(axes, at, strict=True)}
+        log = replace(paddle, **own).run(WALL, duration=0.1, v=0.1)
+        assert swept.values[at] == np.abs(log.F).max(), own
+
+
+def test_a_lag_that_is_less_than_rounding_is_none_but_for_the_velocity():
+    """Also right after a paddle without, whose program it shares but for where its velocity comes from."""
+    for lag, columns in ((0.0, 4), (1e-13, 6), (0.0, 4)):
+        log = SimulatedPaddle(m=0.05, b=0.1, T=T, sensor_delay=lag).run(hl.wall()(k=100), duration=0.01, v=0.1)
+        assert len(log.columns) == columns
+
+
+def test_a_map_over_the_lag():
+    """Its line of passivity is 2 b / (T + 2 lag) for whole samples, as for a delay."""
+    paddle, lags = SimulatedPaddle(m=0.05, b=0.5, T=T, hand=hl.Hand(push=0.5)), np.array([0.0, 1e-3, 2e-3])
+    found = hl.stability.wall_map(paddle, over=("K", "sensor_delay"), sensor_delay=lags, K=np.array([100.0, 300.0]), duration=0.3)
+    assert [float(hl.passivity_limit(replace(paddle, sensor_delay=lag))) for lag in lags] == pytest.approx(
+        [2 * 0.5 / (T + 2 * lag) for lag in lags]
+    )
+    assert found.regions.shape == (2, 3) and found.regions[0, 0] < found.regions[1, 2]
 
 
 def test_lanes_have_the_motor():
