@@ -50,7 +50,7 @@ hapkit_as5048a = PaddleProfile(
     source=(
         "sketch of Stanford's ME327 (github.com/13strings/me327, helpers.h) for 16384 counts a turn, chip select D10, PWM D5, "
         "direction D8 and full duty at 0.0183 N m; radii of that team's paddle, 5, 75 and 80 mm; the sensor's 0.1 ms and 0.06 "
-        "degrees rms are those of its data sheet as remembered, not looked up; m, b and force limit illustrative"
+        "degrees rms are its data sheet's from memory, to be confirmed; m, b and force limit illustrative"
     ),
 )
 longhorn = PaddleProfile(
