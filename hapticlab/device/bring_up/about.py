@@ -20,6 +20,11 @@ def is_simulated(paddle):
     return paddle.exchange.lockstep or paddle.url.startswith("sim://")
 
 
+def what_happened(paddle):
+    """Return what a board went through before it was connected, without the address of its port."""
+    return "; ".join(notice.removeprefix(f"{paddle.url}: ") for notice in paddle.notices)
+
+
 def about_board(paddle):
     """Return what identifies board, firmware and settings; no person, no computer's name, no path."""
     board, name = paddle.board, paddle.board["board"]
@@ -35,7 +40,7 @@ def about_board(paddle):
         "firmware": f"{board['major']}.{board['minor']}, messages {board['table']:08x} (this package: {table_hash():08x})",
         "image that comes with this package": _image(shipped),
         "last reset": f"{cause}: {meaning}",
-        "pending before": "; ".join(paddle.notices) or "nothing",
+        "pending before": what_happened(paddle) or "nothing",
         "python": f"{sys.version_info.major}.{sys.version_info.minor} on {sys.platform}",
     }
 

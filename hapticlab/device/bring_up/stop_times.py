@@ -13,6 +13,7 @@ from ..link.messages import FAULTS as WORDS
 from ..link.messages import HOST_SILENCE_MS, STATES, row_of
 from ..setup.person import agrees
 from ..setup.stored_settings import lead_home
+from .about import what_happened
 from .report import Finding
 from .steps import PULL
 
@@ -105,7 +106,7 @@ def cable(bench):
     yield Finding.seen("cable", "pull ended", ended, "yes" if ended else "no", f"HOST_SILENCE_MS = {HOST_SILENCE_MS}")
     bench.person.ask("Plug the cable in again, and press Enter.")
     bench.plug_in()
-    said = "; ".join(bench.paddle.notices) or "nothing: it lost its power with the cable, or opening the port reset it"
+    said = what_happened(bench.paddle) or "nothing: it lost its power with the cable, or opening the port reset it"
     yield Finding("cable", "the board afterwards", found=said)
     lead_home(bench.paddle, bench.person)
 

@@ -20,6 +20,7 @@ from hapticlab.device.link.messages import STATES
 from hapticlab.device.link.serial_ports import open_port
 from hapticlab.device.setup import sign_check
 from hapticlab.device.setup.calibrate import calibrate
+from hapticlab.device.setup.practice import GRAM
 
 STOPS = [("host silent", 0.1), ("not finite", 0.0), ("over-speed", 0.0), ("over-travel", 0.0)]
 
@@ -66,6 +67,7 @@ class TestWhole:
         assert {f.step for f in report.findings} == set(STEPS) - {"supply off"}
         for step, least in STOPS:
             assert least <= report[step, "stop time"].found <= least + 0.003
+        assert report["cable", "the board afterwards"].found.startswith("a fault was pending: tick ")
         assert "HOST_SILENT" in report["cable", "the board afterwards"].found
         assert report.about["settings"] == str(kept)
         page, data = report.save(tmp_path / "here")
@@ -98,7 +100,7 @@ class TestWhole:
     @pytest.mark.skipif(missing() is not None, reason=str(missing()))
     def test_the_emulated_uno(self, monkeypatch):
         monkeypatch.setattr(motor_off, "LOOP", 0.5)
-        only(monkeypatch, "link", "switch", "host silent", "STOP", "Ctrl-C", "not finite", "over-speed", "cable", "lag")
+        only(monkeypatch, "link", "switch", "host silent", "STOP", "Ctrl-C", "not finite", "over-speed", "cable", "lag", "force")
         silent_from = []
 
         def fault(shared, seconds, wait=walk.Bench.fault):
@@ -107,7 +109,7 @@ class TestWhole:
 
         monkeypatch.setattr(walk.Bench, "fault", fault)
         with emulated_uno() as paddle:
-            report = bench(paddle, PractisingOwner(UnoPort.on(paddle)))
+            report = bench(paddle, UnoOwner(UnoPort.on(paddle)))
             cycles, duties = paddle.loop.board.duties()
         assert verdicts(report) == {}, str(report)
         off = cycles[(cycles > silent_from[0]) & (duties == 0)][0]  # at the pins, from the computer's last word
@@ -131,6 +133,14 @@ class UnoPort:
             "board": property(lambda self: loop.board),
         })  # fmt: skip
         return paddle
+
+
+class UnoOwner(PractisingOwner):
+    """Reads the scale of an emulated Uno: what its pins make of the motor."""
+
+    def weigh(self):
+        self.board.wait(0.02)
+        return f"{abs(self.port.loop.force()) / GRAM:.0f}"
 
 
 class TestPartial:
