@@ -2,5 +2,6 @@
 
 In: a board, the person who owns it, a switch in reach. Out: the evidence by which the board ceases to be untried.
 Read ``steps``, what each asks and expects; ``bench``, which walks through them; ``motor_off``, ``stop_times``, ``limits`` and
-``forces``, what each measures; ``lag``; ``about`` and ``report``. ``practised`` is a simulated owner.
+``forces``, what each measures with what they have ``shared``; ``lag``; ``about`` and ``report``; ``practised``, a simulated
+owner.
 """

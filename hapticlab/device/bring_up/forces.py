@@ -5,7 +5,7 @@ import math
 from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
 from ..setup.calibrate import calibrate
-from ..setup.force_constant import on_scale
+from ..setup.force_constant import largest_force, on_scale
 from ..setup.person import agrees
 from .lag import fit_lag
 from .report import Finding
@@ -63,7 +63,8 @@ def _tugged(bench):
 
 def force(bench):
     """Press on a scale, if there is one."""
-    if not agrees(bench.person, "Do you have a kitchen scale here, to measure the force?"):
+    most = f"The motor then presses with up to {largest_force(bench.paddle.settings):.2g} N."
+    if not agrees(bench.person, f"Do you have a kitchen scale here, to measure the force? {most}"):
         yield Finding.skipped("force", "no scale")
         return
     bench.person.ask("Rest the handle on the scale, with the paddle fixed to the table, and press Enter.")

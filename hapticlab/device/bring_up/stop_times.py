@@ -63,15 +63,13 @@ def stop(bench):
 def interrupt(bench):
     """The person presses Ctrl-C in a run."""
     bench.hold(f"Press Enter, and then press Ctrl-C within {ACT:g} s.")
-    came = False
-    with bench.pulled() as paddle:
-        try:
+    try:
+        with bench.pulled() as paddle:
             paddle.wait(ACT)
-        except KeyboardInterrupt:
-            came = True
-        state = paddle.exchange.refresh()["state"]
-        paddle.stop()
-    if not came:
+            paddle.stop()
+    except KeyboardInterrupt:
+        state = bench.paddle.state()["state"]
+    else:
         yield Finding.skipped("Ctrl-C", f"Ctrl-C did not come within {ACT:g} s")
         return
     off = state != STATES["RUN"]

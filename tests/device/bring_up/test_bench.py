@@ -15,6 +15,7 @@ from hapticlab.device.bring_up.about import settings_of
 from hapticlab.device.bring_up.bench import OFF, ON, bench
 from hapticlab.device.bring_up.practised import PractisingOwner
 from hapticlab.device.bring_up.report import Finding
+from hapticlab.device.bring_up.shared import Bench
 from hapticlab.device.bring_up.steps import STEPS
 from hapticlab.device.link.messages import STATES
 from hapticlab.device.link.serial_ports import open_port
@@ -103,11 +104,11 @@ class TestWhole:
         only(monkeypatch, "link", "switch", "host silent", "STOP", "Ctrl-C", "not finite", "over-speed", "cable", "lag", "force")
         silent_from = []
 
-        def fault(shared, seconds, wait=walk.Bench.fault):
+        def fault(shared, seconds, wait=Bench.fault):
             silent_from.append(shared.paddle.loop.board.cycle)
             return wait(shared, seconds)
 
-        monkeypatch.setattr(walk.Bench, "fault", fault)
+        monkeypatch.setattr(Bench, "fault", fault)
         with emulated_uno() as paddle:
             report = bench(paddle, UnoOwner(UnoPort.on(paddle)))
             cycles, duties = paddle.loop.board.duties()
