@@ -19,7 +19,7 @@
 #if defined(HL_READING_BITS) && HL_READING_BITS == 32
 typedef uint32_t hl_reading;
 typedef int32_t hl_way;
-#define HL_WAY_SURE INT32_MAX /* counts a tick that are no turn */
+#define HL_WAY_SURE (INT32_MAX - 0x10000) /* counts a tick that are no turn */
 #else
 typedef uint16_t hl_reading;
 typedef int16_t hl_way;
@@ -56,10 +56,31 @@ typedef struct {
 /* Limits of the handle as counts, so that the tick compares whole numbers. */
 typedef struct {
     int32_t lowest, highest; /* beyond them is over-travel */
-    int32_t speed;           /* counts a tick */
-    int32_t alias;           /* counts from sample to sample, beyond them the sensor may have turned over unseen */
+    hl_way speed;            /* counts a tick */
+    hl_way jump;             /* counts a tick by which the speed changes: more is doubted */
+    hl_way alias;            /* counts from sample to sample, beyond them the sensor may have turned over unseen */
     int32_t span;            /* between the stops */
 } hl_limits;
+
+/* How the handle was followed from reading to reading. */
+enum { HL_TRACK_FINE, HL_TRACK_FAST, HL_TRACK_LOST };
+typedef struct {
+    hl_reading reading; /* the last trusted one */
+    hl_way step;        /* counts a period, as it was trusted last */
+    hl_way ahead;       /* counts that the handle is taken to have gone since */
+    uint8_t unread;     /* there is no reading yet */
+    uint8_t sure;       /* `step` is of this period and no guess */
+    uint8_t strained;   /* `step` was faster than the limit, though that may be a reading before it */
+    uint8_t doubted;    /* periods for which the last reading was not trusted */
+    uint8_t verdict;    /* at this tick: HL_TRACK_... */
+} hl_track;
+
+/* How long the sensor has not moved under a force, and what that leaves of the force. */
+typedef struct {
+    uint16_t counts; /* where it stands: the lower bits */
+    uint16_t ticks;
+    float gain, gain_step;
+} hl_still;
 
 typedef struct hl_core {
     /* link: rx is filled by hl_core_byte, tx holds a frame the board had no room for */
@@ -85,9 +106,9 @@ typedef struct hl_core {
     uint8_t calibrated, homed, mismatch, armed, standalone;
 
     /* the handle */
-    hl_reading reading;        /* of the sensor, as it was taken last */
-    uint8_t unread;            /* there is no reading yet to compare with */
-    int32_t counts, before;    /* at this tick, at the one before: readings, unwrapped, without bound */
+    int32_t counts;            /* at this tick: readings, unwrapped, without bound */
+    hl_track track;
+    hl_still still;
     int32_t origin;            /* position = (counts - origin) * settings.metres_per_count */
     int32_t seen_min, seen_max; /* since the position became unknown */
     hl_limits limits;
@@ -97,7 +118,7 @@ typedef struct hl_core {
     int32_t set_tick; /* set_tick: the last one before the parameters that were set last, -1: none */
     float x, v, force;
     float rate, force_limit, duty_per_force;
-    uint16_t period_us, period_clocks, last_begin;
+    uint16_t period_us, period_clocks, ticks_per_second, last_begin;
     uint8_t first;
     uint16_t every, countdown; /* decimation */
     uint16_t silent, silence;  /* ticks since the host was heard, and how many are too many */

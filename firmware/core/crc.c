@@ -12,7 +12,7 @@ uint16_t hl_crc16(const uint8_t *bytes, uint8_t count)
     return crc;
 }
 
-uint32_t hl_crc32(uint32_t crc, const uint8_t *bytes, uint16_t count)
+uint32_t hl_crc32(uint32_t crc, const uint8_t *bytes, size_t count)
 {
     crc = ~crc;
     while (count--) {

@@ -1,37 +1,15 @@
 #include "parts.h"
 
-/* The nearest whole number; far enough from the ends of int32 for sums. */
+/* The nearest whole number; far enough from the ends of int32 for sums and small multiples. */
 static int32_t whole(float a)
 {
-    const float limited = a > 1e9f ? 1e9f : a < -1e9f ? -1e9f : a;
+    const float limited = a > 1e8f ? 1e8f : a < -1e8f ? -1e8f : a;
     return (int32_t)(limited < 0.0f ? limited - 0.5f : limited + 0.5f);
 }
 
 static int32_t counts_of(const hl_core *core, float metres)
 {
     return whole(metres / core->settings.metres_per_count);
-}
-
-/* The way from one reading to the next: the nearest, as a sensor may have gone from its last count to its first. */
-static hl_way way_of(const hl_core *core, hl_reading from, hl_reading to)
-{
-    const hl_way way = (hl_way)(to - from), wrap = (hl_way)core->settings.wrap;
-    if (core->settings.sensor == HL_SENSOR_QUADRATURE) {
-        return way;
-    }
-    return (hl_way)(2 * way > wrap ? way - wrap : 2 * way < -wrap ? way + wrap : way);
-}
-
-/* Take the sensor's reading into counts, which grow and shrink with the position without bound. */
-void hl_handle_read(hl_core *core)
-{
-    const hl_reading reading = board_reading(core);
-    core->before = core->counts;
-    if (!core->unread) {
-        core->counts = hl_moved(-(int32_t)way_of(core, core->reading, reading), core->counts);
-    }
-    core->reading = reading;
-    core->unread = 0;
 }
 
 /* The speed limit in counts a period; one count of noise either way is no motion. */
@@ -52,14 +30,26 @@ void hl_handle_limits(hl_core *core)
     core->limits.span = high - low;
     core->limits.lowest = low - margin;
     core->limits.highest = high + margin;
-    core->limits.speed = hl_handle_speed(core, core->period_us);
     /* of `wrap` counts half either way looks alike: an eighth is kept as margin */
-    core->limits.alias = s->sensor == HL_SENSOR_QUADRATURE ? HL_WAY_SURE : (int32_t)s->wrap * 3 / 8;
+    core->limits.alias = s->sensor == HL_SENSOR_QUADRATURE ? HL_WAY_SURE : (hl_way)((int32_t)s->wrap * 3 / 8);
+    const int32_t speed = hl_handle_speed(core, core->period_us);
+    core->limits.speed = core->calibrated && speed < core->limits.alias ? (hl_way)speed : core->limits.alias;
+    /* a quarter of the limit in one tick, and some noise. Beside what was expected are three jumps at most after a doubt,
+     * and as many where the handle changes its speed meanwhile: six are the most that is sure to be no turn */
+    const hl_way jump = (hl_way)((core->limits.speed >> 2) + 8), most = (hl_way)(s->wrap >> 4);
+    core->limits.jump = jump < most ? jump : most;
+    core->track.step = 0; /* it was counts of another period */
+    core->track.sure = 0;
 }
 
-/* The handle is at this position now. */
+/* The handle is at this position now; where the last reading is doubted, it is with the next one. */
 void hl_handle_place(hl_core *core, float position)
 {
+    if (core->track.doubted) {
+        core->track.unread = 1;
+        core->track.ahead = 0;
+        core->track.doubted = 0;
+    }
     core->origin = hl_moved(counts_of(core, position), core->counts);
     core->homed = 1;
     core->mismatch = 0;
@@ -74,20 +64,24 @@ void hl_handle_lose(hl_core *core)
     core->seen_max = INT32_MIN;
 }
 
-/* Whether the sensor may have turned over between two samples without a trace. */
-uint8_t hl_handle_aliased(const hl_core *core, int32_t before)
+/* Whether the handle is beyond its travel, or nearer to its end than so many counts. */
+HL_CALLED uint8_t hl_handle_outside(const hl_core *core, int32_t margin)
 {
-    const int32_t moved = hl_moved(before, core->counts);
-    return moved > core->limits.alias || moved < -core->limits.alias;
+    const int32_t place = hl_moved(core->origin, core->counts);
+    return place < core->limits.lowest + margin || place > core->limits.highest - margin;
 }
 
-/* In IDLE: a handle led to both stops has told where it is. */
+/* In IDLE: a handle led to both stops has told where it is, and one that leaves its travel has told that it slipped. */
 void hl_handle_watch(hl_core *core)
 {
     const int32_t counts = core->counts;
+    if (core->homed && core->calibrated && hl_handle_outside(core, 0)) {
+        hl_handle_lose(core);
+        core->mismatch = 1;
+    }
     core->seen_min = counts < core->seen_min ? counts : core->seen_min;
     core->seen_max = counts > core->seen_max ? counts : core->seen_max;
-    const int32_t seen = hl_moved(core->seen_min, core->seen_max), allowed = core->limits.span / 32;
+    const int32_t seen = hl_moved(core->seen_min, core->seen_max), allowed = core->limits.span >> 5;
     if (core->homed || !core->calibrated || seen < core->limits.span - allowed) {
         return;
     }
@@ -102,6 +96,7 @@ void hl_handle_watch(hl_core *core)
     const float middle = 0.5f * (core->settings.travel_min + core->settings.travel_max);
     core->origin = hl_moved(counts_of(core, middle) - seen / 2, core->seen_min);
     core->homed = 1;
+    core->mismatch = 0;
 }
 
 float hl_handle_position(const hl_core *core, int32_t counts)

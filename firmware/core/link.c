@@ -8,25 +8,6 @@
 /* bytes of the running program that one poll audits */
 enum { AUDIT_BYTES = 8 };
 
-void hl_core_byte(hl_core *core, uint8_t byte)
-{
-    if (core->rx_ready) {
-        core->rx_bad = byte != 0; /* the frame before is not answered yet: what comes now is lost, to its end */
-    } else if (byte != 0) {
-        if (core->rx_count < HL_WIRE_BYTES) {
-            core->rx[core->rx_count++] = byte;
-        } else {
-            core->rx_bad = 1;
-        }
-    } else if (core->rx_bad) {
-        core->rx_count = 0;
-        core->rx_bad = 0;
-        core->damaged++;
-    } else if (core->rx_count) {
-        core->rx_ready = 1;
-    }
-}
-
 static void transmit(hl_core *core)
 {
     if (board_send(core, core->tx, core->tx_count)) {

@@ -4,7 +4,7 @@
 void hl_core_fault(hl_core *core, uint8_t fault, float value)
 {
     board_motor(core, 0);
-    if (fault == HL_FAULT_SENSOR || fault == HL_FAULT_OVER_TRAVEL || hl_handle_aliased(core, core->before)) {
+    if (fault == HL_FAULT_SENSOR || fault == HL_FAULT_FROZEN || fault == HL_FAULT_OVER_TRAVEL) {
         hl_handle_lose(core); /* counts may have been missed: what was seen of the stops is worth nothing either */
     }
     if (core->state != HL_STATE_RUN) {
@@ -43,21 +43,18 @@ static uint8_t is_unsafe(hl_core *core, uint16_t periods)
         hl_core_fault(core, HL_FAULT_HOST_SILENT, 0.0f);
         return 1;
     }
-    if (!core->first && hl_handle_aliased(core, core->before)) {
+    if (core->track.verdict == HL_TRACK_LOST) {
         hl_core_fault(core, HL_FAULT_OVER_SPEED, core->v); /* with the motor off too: the position is lost */
         return 1;
     }
     if (!core->calibrated || core->force_limit == 0.0f) {
         return 0; /* the motor is off: nothing to protect */
     }
-    const int32_t place = hl_moved(core->origin, core->counts);
-    if (place < core->limits.lowest || place > core->limits.highest) {
+    if (core->track.doubted == 0 && hl_handle_outside(core, 0)) {
         hl_core_fault(core, HL_FAULT_OVER_TRAVEL, core->x);
         return 1;
     }
-    int32_t moved = hl_moved(core->before, core->counts);
-    moved = periods > 1 ? moved / (int32_t)periods : moved;
-    if (!core->first && (moved > core->limits.speed || moved < -core->limits.speed)) {
+    if (core->track.verdict == HL_TRACK_FAST && !core->first) {
         hl_core_fault(core, HL_FAULT_OVER_SPEED, core->v);
         return 1;
     }
@@ -122,7 +119,7 @@ static void watch_overruns(hl_core *core)
         hl_core_fault(core, HL_FAULT_OVERRUN, (float)core->timing.step_last / (float)core->period_clocks);
     }
     if (--core->second == 0) {
-        core->second = (uint16_t)(UINT32_C(1000000) / core->period_us);
+        core->second = core->ticks_per_second;
         core->late_second = 0;
     }
 }
@@ -147,10 +144,9 @@ static int compute(hl_core *core, hl_slot *outputs)
     return 1;
 }
 
-static void run(hl_core *core, uint16_t begin)
+static void run(hl_core *core, uint16_t begin, uint16_t periods)
 {
     hl_slot outputs[HL_CHANNELS];
-    const uint16_t periods = measure(core, begin);
     const uint8_t skipped = periods > 1 && !core->was_late;
     const float x = hl_handle_position(core, core->counts);
     core->tick += periods;
@@ -170,6 +166,12 @@ static void run(hl_core *core, uint16_t begin)
         force.i = limit.i | (force.i & INT32_MIN);
         flags |= HL_SAMPLE_SATURATED;
     }
+    hl_slot kept;
+    kept.f = hl_handle_fade(core, force.f);
+    if (kept.i != force.i) {
+        force = kept;
+        flags |= HL_SAMPLE_SATURATED;
+    }
     core->force = force.f;
     hl_motor(core, -force.f);
     const uint8_t late = is_late(core, begin);
@@ -185,48 +187,17 @@ static void run(hl_core *core, uint16_t begin)
     core->first = 0;
 }
 
-/* Without a host: a program kept in the store starts when the handle, led to both stops, rests in the middle for 1 s. */
-static void await_standalone(hl_core *core)
-{
-    const int32_t tenth = core->limits.span / 10;
-    const int32_t off = hl_moved(core->origin, core->counts) - (core->limits.lowest + core->limits.highest) / 2;
-    const int32_t moved = hl_moved(core->resting, core->counts);
-    const int32_t still = core->limits.span / 200 + 2;
-    if (!core->homed || off > tenth || off < -tenth || moved > still || moved < -still) {
-        core->resting = core->counts;
-        core->rested = 0;
-        return;
-    }
-    if (++core->rested > UINT32_C(1000000) / core->period_us) {
-        core->rested = 0;
-        hl_place_start(core, core->active, 1, 0, core->settings.force_max);
-    }
-}
-
-static void idle(hl_core *core)
-{
-    if (hl_handle_aliased(core, core->before)) {
-        hl_handle_lose(core);
-    }
-    if (core->period_us != HL_IDLE_PERIOD_US) {
-        hl_place_idle(core); /* after a fault */
-    }
-    hl_handle_watch(core);
-    hl_heat(core, 0);
-    if (core->standalone && core->state == HL_STATE_IDLE) {
-        await_standalone(core);
-    }
-}
-
 void hl_core_tick(hl_core *core)
 {
     const uint16_t begin = board_clock(core);
-    hl_handle_read(core);
     core->ran = 1;
     if (core->state == HL_STATE_RUN) {
-        run(core, begin);
+        const uint16_t periods = measure(core, begin);
+        hl_handle_read(core, core->first ? 1 : periods);
+        run(core, begin, periods);
     } else {
-        idle(core);
+        hl_handle_read(core, 1);
+        hl_idle(core);
         core->last_begin = begin;
     }
 }

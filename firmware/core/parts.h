@@ -4,6 +4,13 @@
 
 #include "board.h"
 
+/* called, not copied to where it is used: a small board's flash is short */
+#if defined(__AVR__)
+#define HL_CALLED __attribute__((__noinline__))
+#else
+#define HL_CALLED
+#endif
+
 /* From one count to another; they have no bounds, so the difference may turn over, and is right again when they meet. */
 static inline int32_t hl_moved(int32_t from, int32_t to)
 {
@@ -23,13 +30,19 @@ uint8_t hl_store_program(hl_core *core, const hl_place *place, uint16_t size);
 uint8_t hl_store_arm(hl_core *core, uint8_t armed);
 uint8_t hl_load_standalone(hl_core *core);
 
+/* reading.c: the sensor, tick by tick */
+void hl_handle_read(hl_core *core, uint16_t periods);
+float hl_handle_fade(hl_core *core, float force);
+
+/* idle.c */
+void hl_idle(hl_core *core);
+
 /* handle.c: where the handle is */
-void hl_handle_read(hl_core *core);
 void hl_handle_limits(hl_core *core);
 void hl_handle_place(hl_core *core, float position);
 void hl_handle_lose(hl_core *core);
 int32_t hl_handle_speed(const hl_core *core, uint16_t period_us);
-uint8_t hl_handle_aliased(const hl_core *core, int32_t before);
+uint8_t hl_handle_outside(const hl_core *core, int32_t margin);
 void hl_handle_watch(hl_core *core);
 float hl_handle_position(const hl_core *core, int32_t counts); /* [m] */
 

@@ -91,7 +91,8 @@ static void set_period(hl_core *core, uint16_t us)
     core->period_clocks = (uint16_t)((uint32_t)us * (HL_CLOCK_HZ / 1000000u));
     core->rate = 1e6f / (float)us;
     core->silence = (uint16_t)(HL_HOST_SILENCE_MS * UINT32_C(1000) / us);
-    core->second = (uint16_t)(UINT32_C(1000000) / us);
+    core->second = core->ticks_per_second = (uint16_t)(UINT32_C(1000000) / us);
+    core->still.gain_step = 5e-6f * (float)us; /* out in 0.2 s */
     hl_handle_limits(core);
     board_period(core, us);
 }
@@ -122,6 +123,9 @@ uint8_t hl_place_start(hl_core *core, uint8_t index, uint16_t every, uint8_t opt
     core->force = 0.0f;
     core->first = 1;
     core->silent = 0;
+    core->still.counts = (uint16_t)core->counts;
+    core->still.ticks = 0;
+    core->still.gain = 1.0f;
     core->late = 0;
     core->was_late = 0;
     core->late_second = 0;

@@ -86,7 +86,8 @@ void hl_settings_load(hl_core *core, hl_place *place)
         s->wrap = 1024;
     }
     hl_motor_configure(core, curve, stood);
-    core->unread = 1;
+    memset(&core->track, 0, sizeof core->track);
+    core->track.unread = 1;
     hl_place_idle(core);
     hl_handle_lose(core);
     board_configure(core);

@@ -1,3 +1,4 @@
+#include "crc.h"
 #include "flash.h"
 #include "word.h"
 
@@ -21,18 +22,6 @@ static uint16_t read_16(const uint8_t *p)
 static uint32_t read_32(const uint8_t *p)
 {
     return read_16(p) | (uint32_t)read_16(p + 2) << 16;
-}
-
-static uint32_t crc_32(const uint8_t *p, uint32_t size)
-{
-    uint32_t crc = 0xffffffffUL;
-    while (size--) {
-        crc ^= *p++;
-        for (uint8_t bit = 0; bit < 8; bit++) {
-            crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320UL : 0);
-        }
-    }
-    return ~crc;
 }
 
 /* Find the parts of a program. Sums are of 16-bit counts, so 32 bits hold them. */
@@ -209,7 +198,7 @@ hl_result hl_verify(hl_program *program, const uint8_t *bytes, uint32_t size, hl
     if (result != HL_OK) {
         return result;
     }
-    if (crc_32(bytes, size - 4) != read_32(bytes + size - 4)) {
+    if (hl_crc32(0, bytes, (size_t)(size - 4)) != read_32(bytes + size - 4)) {
         return HL_CRC;
     }
     if (program->count[HL_COUNT_REGISTERS] > capacity) {

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0x303e0343UL
+#define HL_PROTOCOL_HASH 0xf36dad37UL
 #define HL_SETTINGS_HASH 0xb154e035UL
 #define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
@@ -152,6 +152,7 @@ enum {
     HL_FAULT_OVERRUN = 6,
     HL_FAULT_BAD_PROGRAM = 7,
     HL_FAULT_SENSOR = 8,
+    HL_FAULT_FROZEN = 10,
     HL_FAULT_MEMORY = 9,
 };
 

@@ -19,7 +19,7 @@ from build_image import build_image
 from hapticlab.compiler.engines.bytecode import encode, layout
 
 HERE = Path(__file__).resolve().parent
-SOURCES = ("core/vm.c", "core/verify.c", "generated/elementary.c")
+SOURCES = ("core/vm.c", "core/verify.c", "core/crc.c", "generated/elementary.c")
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections")
 FLAGS += ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 UNO = [*build_image.chip_flags("uno"), HERE.parents[1] / "firmware/boards/uno/float.S"]

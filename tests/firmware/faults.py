@@ -58,6 +58,11 @@ def break_wire(paddle):
     paddle.loop.sensor.show = lambda board, position: board.adc(0)
 
 
+def freeze_sensor(paddle):
+    """The pin stays where it is, as behind a magnet that fell off its shaft."""
+    paddle.loop.sensor.show = lambda board, position: None
+
+
 def damage_program(paddle):
     """A bit of the program's bytes in RAM flips."""
     memory = paddle.loop.board.memory
@@ -93,9 +98,10 @@ HOT = {"force_continuous": 0.8, "heating_time": 1.0, "force_max": 0.9}
 FAULTS = {
     "host silent": Fault("HOST_SILENT", 0.1 + 2 * T, fall_silent),
     "division by zero": Fault("NOT_FINITE", 3 * T, lambda paddle: paddle.set(y=0.0), QUOTIENT),
-    "over-speed": Fault("OVER_SPEED", 2 * T, partial(push, v=4.0)),
+    "over-speed": Fault("OVER_SPEED", 3 * T, partial(push, v=4.0)),
     "over-travel": Fault("OVER_TRAVEL", 2 * T, partial(push, x=0.007), ALWAYS(K=5), settings=SHORT),
     "sensor's wire": Fault("SENSOR", 2 * T, break_wire),
+    "sensor frozen": Fault("FROZEN", 1.2 + 3 * T, freeze_sensor),
     "heat": Fault("OVER_HEAT", 1.57, nothing, ALWAYS, settings=HOT),
     "steps too long": Fault("OVERRUN", 20e-3, nothing, pendulum()[0], period=0.5e-3),
     "program damaged in memory": Fault("BAD_PROGRAM", 0.1, damage_program),

@@ -145,6 +145,11 @@ FAULTS = {
         "the position sensor gave an impossible reading or lost counts",
         "check the sensor's wires and magnet, then home again",
     ),
+    "FROZEN": (
+        10,
+        "the position sensor did not move while the motor pushed, not even while the force faded out",
+        "check that magnet, capstan and wires are tight; if something held the handle still, let it move, then home again",
+    ),
     "MEMORY": (9, "the stack reached the data", "send a smaller scene and report this with the scene"),
 }
 STATES = {"IDLE": 0, "RUN": 1, "FAULT": 2}
