@@ -129,6 +129,7 @@ float hl_cosf(float x)
     return t65;
 }
 
+HL_MADE_SMALL
 float hl_expf(float x)
 {
     const int t2 = hl_bits_within(x, 0xc2d00001UL, 0xff800000UL);
@@ -164,6 +165,7 @@ float hl_expf(float x)
     return t41;
 }
 
+HL_MADE_SMALL
 float hl_logf(float x)
 {
     const int t53 = hl_bits_within(x, 0x00000001UL, 0x7f800000UL);
@@ -289,6 +291,7 @@ float hl_atanf(float x)
     return t46;
 }
 
+HL_MADE_SMALL
 float hl_tanhf(float x)
 {
     const float t1 = hl_absf(x);

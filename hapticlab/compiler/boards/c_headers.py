@@ -15,6 +15,8 @@ from ..ir.trace import Builder
 
 NOTICE = "/* Written by hapticlab/compiler/boards/c_headers.py: change the Python tables, not this file. */\n"
 _C_TYPE = {"f32": "float", "bool": "int"}
+#: functions that an AVR's compiler can make 1 300 bytes smaller in all, for 1 % more cycles at the most
+MADE_SMALL = ("exp", "log", "tanh")
 
 
 def generate():
@@ -81,7 +83,8 @@ def _function(name):
             names[k] = f"t{k}"
             bodies.setdefault(places[k], []).append(k)
     lines = _statements((), code, names, bodies)
-    return "\n".join([_head(name), "{", *lines, f"    return {names[result]};", "}", ""])
+    small = ["HL_MADE_SMALL"] if name in MADE_SMALL else []
+    return "\n".join([*small, _head(name), "{", *lines, f"    return {names[result]};", "}", ""])
 
 
 def _places(code, result):
