@@ -160,6 +160,8 @@ static void answer_request(hl_core *core)
         if (request == SET_LINE_STATE) {
             line_state(core, value);
         }
+    } else if (kind & OF_CLASS) {
+        refuse(); /* a vendor's */
     } else if (request == GET_DESCRIPTOR) {
         describe(REQUEST(3), value, most);
     } else if (kind & FROM_DEVICE) {
