@@ -45,6 +45,24 @@ def test_without_a_flight_a_board_is_told_the_counts_themselves():
     assert logs[2].fault is not None or not np.array_equal(logs[0].x, logs[2].x)
 
 
+@pytest.mark.parametrize("flight", [5e-5, 1e-4, 2e-4])
+@pytest.mark.always("0.0002")
+def test_a_scene_goes_on_while_the_reading_is_in_flight(flight):
+    """A hand sways over both edges; before the core distrusted such a reading, most of these runs ended as OVER_SPEED."""
+    for rate in (8, 9, 10):
+        logs = []
+        for own in (0.0, flight):
+            port = open_port("sim://hapkit")
+            hand = hl.Hand(k=200.0, b=2.0, intent=lambda t, rate=rate: 0.02 * np.sin(rate * t))
+            told = nominal("hapkit", wired=1, checked=1, sensor_flight=own)
+            port.put_on(SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hand), settings=told)
+            with hl.devices.SerialPaddle("sim://hapkit", port=port) as paddle:
+                logs.append(paddle.run(hl.wall()(k=50.0, x_o=0.005), duration=2.0))
+        assert logs[1].fault is None and len(logs[1]) == 2000
+        assert np.abs(logs[1].x - logs[0].x).max() < 1.5e-3  # of a handle at up to 0.2 m/s, whose place it held meanwhile
+        assert logs[1].x[-1] == pytest.approx(logs[0].x[-1], abs=2e-4)  # and no count is lost
+
+
 def test_a_motor_that_its_board_does_not_know():
     """Beside one that it knows: the force that acts at the handle, by where hand and wall balance."""
     curve = {"duty_dead": 0.2, "duty_25": 0.3, "duty_50": 0.5, "duty_75": 0.8, "force_full": 4.0}
