@@ -61,7 +61,7 @@ void hl_heat(hl_core *core, uint16_t part);
 
 /* heat.c: what force_continuous makes of the motor in the end, and what nothing can pass; in heat_given, that it is too hot */
 #define HL_HEAT_STANDS (INT32_C(1) << 24)
-#define HL_HEAT_MOST (INT32_C(1) << 30)
+#define HL_HEAT_MOST (INT32_C(1) << 29) /* so that two of them fit */
 #define HL_HEAT_OVER 255
 void hl_motor_configure(hl_core *core, const float curve[4], float stood);
 void hl_heat_follow(hl_core *core);
