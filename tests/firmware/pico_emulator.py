@@ -151,6 +151,10 @@ class Pico:
         """Plug the cable in, or pull it out; the board keeps its supply."""
         self._set.append(("attach", on))
 
+    def setup(self, request):
+        """Send the eight bytes of a control request, and zeros where it announces data of the host."""
+        self._set.append(("setup", list(request)))
+
     def listen(self, on):
         """Let the computer ask for what the board sends, or be busy with something else."""
         self._set.append(("listen", on))

@@ -33,11 +33,11 @@ SANITIZERS = ("-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow", "
 NOISE = ("drop", "cut", "repeat", "flip", "reorder", "garbage", "stale", "long")
 
 
-def program(c):
+def program(c, word_bits=16):
     """F = c (k x + push): for each c other bytes."""
     k, push, gain = parameters("k push gain", units="N/m N 1")
     scene = Scene(force=gain * (k * x(n) + push), name="fuzz")(gain=c)
-    return encode_program(compile(scene, T=1e-3, velocity="backward_difference", live=("k", "push")), word_bits=16)
+    return encode_program(compile(scene, T=1e-3, velocity="backward_difference", live=("k", "push")), word_bits=word_bits)
 
 
 def fnv(data):
@@ -59,9 +59,9 @@ class Said:
 class Talk:
     """Events for the board: what hosts said, as it arrived, beside what they meant."""
 
-    def __init__(self, seed):
+    def __init__(self, seed, word_bits=16):
         self.rng = random.Random(seed)
-        self.programs = [program(1.0 + k / 8) for k in range(6)]
+        self.programs = [program(1.0 + k / 8, word_bits) for k in range(6)]
         self.hashes = [fnv(p) for p in self.programs]
         self.events, self.sessions, self.recent, self.held = [], {}, [], []
         self.noise, self.frames, self.kinds = 0.0, 0, Counter()
@@ -322,8 +322,8 @@ def check(what, report, out, model):
         assert state == IDLE
 
 
-def talk_of(frames, seed):
-    talk = Talk(seed)
+def talk_of(frames, seed, word_bits=16):
+    talk = Talk(seed, word_bits)
     while talk.frames < frames:
         talk.noise = talk.rng.choice((0.02, 0.05, 0.1, 0.3))
         for _ in range(10):

@@ -23,6 +23,7 @@ const SET = {
     wire: (drive, pins, select) => { motor.drive = drive, motor.pins = pins, angle.select = select; motor.note(); },
     lines: (on, rate) => usb.setLines(on, rate),
     attach: (on) => usb.attach(on),
+    setup: (bytes) => usb.strange(bytes),
     listen: (on) => usb.listen(on),
     cut: (operation, part) => { rom.cut = { operation: rom.operations + operation, part }; },
     out: (text) => usb.write(unhex(text)),
