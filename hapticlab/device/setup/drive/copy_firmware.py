@@ -7,12 +7,13 @@ often before the computer has finished with the file. So what counts is whether 
 import os
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from ....compiler.boards.board_records import BOARDS, Drive
 from ....errors import PaddleError, PortError
-from ...link.serial_ports import available_ports
+from ...link.serial_ports import available_ports, open_port
 from ...progress import progress_bar
 from ..flash import prebuilt_image
 from .uf2_blocks import parse_uf2
@@ -20,8 +21,9 @@ from .uf2_blocks import parse_uf2
 #: board -> how firmware is copied to it
 COPIED = {name: board.flashing for name, board in BOARDS.items() if isinstance(board.flashing, Drive)}
 INFO = "INFO_UF2.TXT"
-#: s: for a person at the button, for a drive that failed to vanish, for the port to come, and between two looks
-PERSON_WAIT, LEAVE_WAIT, PORT_WAIT, LOOK = 60.0, 3.0, 15.0, 0.25
+#: s: for a drive that the firmware was asked for, for a person at the button, for a drive that failed to vanish, for the port
+#: to come, and between two looks
+ASKED_WAIT, PERSON_WAIT, LEAVE_WAIT, PORT_WAIT, LOOK = 5.0, 60.0, 3.0, 15.0, 0.25
 PIECE = 4096  # bytes
 
 
@@ -69,14 +71,13 @@ def copy_firmware(image=None, board="pico", *, progress=True, tell=lambda senten
     except OSError as problem:
         raise PaddleError(f"{path} does not open ({problem.strerror}); give the path of a .uf2 file") from None
     parse_uf2(content, path.name, how.family)
-    drive = _wait_for_drive(how, tell)
+    drive = _wait_for_drive(board, how, tell)
     before = {port.device for port in available_ports()}
     tell(f"Copying {path.name} to {drive}. The motor stays off. Do not unplug the cable.")
     trouble = _copy(content, drive / path.name, progress)
     if trouble and not _within(LEAVE_WAIT, lambda: not is_drive(drive)):
         raise PaddleError(f"{drive} took no file ({trouble.strerror or trouble}). {_by_hand(how)}, then flash it again")
-    numbers = {(usb.vendor, usb.product) for usb in BOARDS[board].usb}
-    port = _within(PORT_WAIT, lambda: _new_port(numbers, before))
+    port = _within(PORT_WAIT, lambda: _new_port(_numbers(board), before))
     if port is None:
         raise PortError(f"{path.name} was copied, but {_not_back(how, drive)}", "missing")
     return Copied(port.device, path.name, len(content))
@@ -103,9 +104,9 @@ def _by_hand(how):
     )
 
 
-def _wait_for_drive(how, tell):
+def _wait_for_drive(board, how, tell):
     """Return the drive of the one board that waits for firmware; ask for it where there is none."""
-    found = _drives(how)
+    found = _drives(how) or _asked(board, how, tell)
     if not found:
         tell(f"No drive {how.name} is there. Switch off the supply of the motor. {_by_hand(how)}.")
         found = _within(PERSON_WAIT, lambda: _drives(how))
@@ -116,6 +117,25 @@ def _wait_for_drive(how, tell):
         named = " and ".join(map(str, found))
         raise PortError(f"{named}: more than one board waits for firmware. Leave only one of them plugged in", "several")
     return found[0]
+
+
+def _asked(board, how, tell):
+    """Ask a board that runs this firmware for its drive, by closing its port at 1200 baud; it obeys with its motor off only."""
+    numbers = _numbers(board)
+    ports = [port.device for port in available_ports() if (port.vid, port.pid) in numbers]
+    if len(ports) != 1:
+        return None
+    tell(f"Asking {how.called} at {ports[0]} to show its drive.")
+    try:
+        with suppress(OSError, ValueError):  # the port leaves while it is closed
+            open_port(ports[0], baudrate=1200).close()
+    except PortError:  # taken, or forbidden: a person can press the button
+        return None
+    return _within(ASKED_WAIT, lambda: _drives(how))
+
+
+def _numbers(board):
+    return {(usb.vendor, usb.product) for usb in BOARDS[board].usb}
 
 
 def _drives(how):

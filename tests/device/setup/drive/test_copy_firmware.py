@@ -108,6 +108,32 @@ def test_a_person_is_told_how_to_get_the_drive(bench, image):
     assert "Switch off the supply of the motor" in bench.told[0] and "hold down its BOOTSEL button" in bench.told[0]
 
 
+def test_a_board_that_runs_this_firmware_is_asked_for_its_drive(bench, image, monkeypatch):
+    bench.ports.append(BOARD_PORT)
+    asked = []
+
+    class Opened:
+        def close(self):
+            bench.ports.clear()
+            bench.plug_in()
+
+    monkeypatch.setattr(module, "open_port", lambda url, baudrate: asked.append((url, baudrate)) or Opened())
+    assert copy_firmware(image, tell=bench.told.append).port == "/dev/ttyACM7"
+    assert asked == [("/dev/ttyACM7", 1200)] and "Asking a Raspberry Pi Pico at /dev/ttyACM7" in bench.told[0]
+
+
+def test_a_port_that_is_taken_leaves_it_to_the_person(bench, image, monkeypatch):
+    bench.ports.append(BOARD_PORT)
+    bench.at_the_button = lambda: (bench.ports.clear(), bench.plug_in())
+
+    def taken(url, baudrate):
+        raise PortError("another program has it", "taken")
+
+    monkeypatch.setattr(module, "open_port", taken)
+    copy_firmware(image, tell=bench.told.append)
+    assert "BOOTSEL" in bench.told[1]
+
+
 def test_nobody_at_the_button(bench, image):
     with pytest.raises(PortError, match="no drive RPI-RP2 appeared within 60 s. Use a USB cable that carries data. Unplug") as e:
         copy_firmware(image)
