@@ -146,7 +146,7 @@ def test_an_as5048a_that_cannot_be_right_is_a_fault(wrong):
         paddle.wait(0.02)
         log = paddle.stop()
         assert "SENSOR" in log.fault
-        assert (off_from(board, begun) - begun) / CYCLES_PER_SECOND <= 2.1e-3, "an answer comes a tick later"
+        assert (off_from(board, begun) - begun) / CYCLES_PER_SECOND <= 2.4e-3, "diagnostics come a tick after their question"
         board.sensor.zeros = board.sensor.ones = board.sensor.flips = 0
         board.sensor.diagnostics = 0x0140
         paddle.loop.run(0.02)
