@@ -103,6 +103,7 @@ typedef struct hl_core {
     uint32_t fault_tick;
     float fault_value;
     hl_settings settings;
+    uint16_t record_at; /* in the store: the copy of the settings that is in use */
     uint8_t calibrated, homed, mismatch, armed, standalone;
 
     /* the handle */

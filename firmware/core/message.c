@@ -36,7 +36,7 @@ static uint8_t welcome(hl_core *core, const uint8_t *payload, uint8_t *to)
     hl_flash_copy(to + HL_AT_WELCOME_BOARD, board_name, sizeof board_name - 1);
     hl_put32(to + HL_AT_WELCOME_TABLE, HL_PROTOCOL_HASH);
     if (core->calibrated) {
-        board_store_read(core, (uint16_t)offsetof(hl_record, ident), to + HL_AT_WELCOME_IDENT, 2);
+        board_store_read(core, (uint16_t)(core->record_at + offsetof(hl_record, ident)), to + HL_AT_WELCOME_IDENT, 2);
     }
     to[HL_AT_WELCOME_MAJOR] = FIRMWARE_MAJOR;
     to[HL_AT_WELCOME_MINOR] = FIRMWARE_MINOR;
@@ -101,11 +101,17 @@ static uint8_t read_settings(hl_core *core, const uint8_t *payload, uint8_t *to)
     count = count < HL_LARGEST_PAYLOAD - 2 ? count : HL_LARGEST_PAYLOAD - 2;
     count = count < left ? count : (uint8_t)left;
     hl_put16(to, offset);
-    board_store_read(core, left ? offset : 0, to + 2, count);
+    board_store_read(core, (uint16_t)(core->record_at + (left ? offset : 0)), to + 2, count);
     return (uint8_t)(2 + count);
 }
 
-/* Begin an upload. Where the board has one place only, or for what is not a program, nothing may run. */
+/* Whether a run leaves no place for an upload: there is only one, or it is for something else than a program. */
+HL_CALLED static uint8_t is_busy(const hl_core *core, uint8_t target)
+{
+    return core->state == HL_STATE_RUN && (HL_SLOTS == 1 || target != HL_TARGET_PROGRAM);
+}
+
+/* Begin an upload. A tick that starts a program without a host finds it, or finds it gone; it cannot come between. */
 static uint8_t begin(hl_core *core, const uint8_t *payload)
 {
     const uint8_t target = payload[HL_AT_BEGIN_TARGET];
@@ -113,21 +119,22 @@ static uint8_t begin(hl_core *core, const uint8_t *payload)
     if (target > HL_TARGET_STANDALONE) {
         return HL_RESULT_RANGE;
     }
-    if (core->state == HL_STATE_RUN && (HL_SLOTS == 1 || target != HL_TARGET_PROGRAM)) {
-        return HL_RESULT_BUSY;
-    }
-    const uint16_t store = HL_STORE_BYTES - HL_STORE_PROGRAM;
     if (size <= CRC_BYTES) {
         return HL_SIZE;
     }
-    if (size > HL_ARENA_BYTES || (target == HL_TARGET_STANDALONE && size > store)) {
+    if (size > HL_ARENA_BYTES || (target == HL_TARGET_STANDALONE && size > HL_STORE_BYTES - HL_STORE_PROGRAM)) {
         return HL_RESULT_TOO_LARGE;
     }
-    core->loading = (uint8_t)((core->active + 1) % HL_SLOTS);
-    core->places[core->loading].size = 0;
-    core->target = target;
-    core->announced = size;
-    return HL_OK;
+    board_lock(core);
+    const uint8_t busy = is_busy(core, target);
+    if (!busy) {
+        core->loading = (uint8_t)((core->active + 1) % HL_SLOTS);
+        core->places[core->loading].size = 0;
+        core->target = target;
+        core->announced = size;
+    }
+    board_unlock(core);
+    return busy ? (uint8_t)HL_RESULT_BUSY : (uint8_t)HL_OK;
 }
 
 static uint8_t data(hl_core *core, const uint8_t *payload, uint8_t count)
@@ -170,7 +177,7 @@ static uint8_t commit(hl_core *core, const uint8_t *payload)
     if (core->announced == 0 || core->announced != size || core->target != payload[HL_AT_COMMIT_TARGET]) {
         return HL_RESULT_NO_PROGRAM;
     }
-    if (core->state == HL_STATE_RUN && (HL_SLOTS == 1 || core->target != HL_TARGET_PROGRAM)) {
+    if (is_busy(core, core->target)) {
         return HL_RESULT_BUSY;
     }
     core->announced = 0;

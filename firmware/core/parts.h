@@ -18,8 +18,9 @@ static inline int32_t hl_moved(int32_t from, int32_t to)
 }
 
 /* store.c: what survives power-off */
+enum { HL_COPIES = 2 };
 enum { /* addresses; the settings are at 0 */
-    HL_STORE_ARMED = 2 * HL_RECORD_BYTES,
+    HL_STORE_ARMED = HL_COPIES * HL_RECORD_BYTES,
     HL_STORE_SIZE = HL_STORE_ARMED + 1,
     HL_STORE_PROGRAM = HL_STORE_ARMED + 4
 };

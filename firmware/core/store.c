@@ -66,13 +66,22 @@ int hl_settings_valid(const hl_record *record)
     return fit_together(record) && board_accepts(&record->loop);
 }
 
-/* Read the settings through a place whose program is not needed any more. */
+static void turn_copy(hl_core *core)
+{
+    core->record_at = (uint16_t)(HL_RECORD_BYTES - core->record_at);
+}
+
+/* Read the settings through a place whose program is not needed any more: the first copy that is whole. */
 void hl_settings_load(hl_core *core, hl_place *place)
 {
     hl_record *record = &place->arena.record;
     hl_settings *s = &core->settings;
-    board_store_read(core, 0, (uint8_t *)record, (uint16_t)sizeof *record);
-    core->calibrated = (uint8_t)hl_settings_valid(record);
+    core->record_at = HL_RECORD_BYTES;
+    do {
+        turn_copy(core);
+        board_store_read(core, core->record_at, (uint8_t *)record, HL_RECORD_BYTES);
+        core->calibrated = (uint8_t)hl_settings_valid(record);
+    } while (!core->calibrated && core->record_at == 0);
     const float stood = s->force_continuous;
     float curve[4] = {0.0f};
     if (core->calibrated) {
@@ -93,10 +102,15 @@ void hl_settings_load(hl_core *core, hl_place *place)
     board_configure(core);
 }
 
-/* Write the settings that a place holds and take them into use; what was written is read back. */
+/* Write the settings that a place holds and take them into use; what was written is read back. The copy in use is written
+ * last, so that whenever the power fails one copy is whole: the old settings, or the new ones. */
 uint8_t hl_settings_save(hl_core *core, hl_place *place)
 {
-    const uint8_t kept = board_store_write(core, 0, place->arena.bytes, (uint16_t)sizeof(hl_record));
+    uint8_t kept = 1;
+    for (uint8_t k = 0; k < HL_COPIES && kept; k++) {
+        turn_copy(core);
+        kept = board_store_write(core, core->record_at, place->arena.bytes, HL_RECORD_BYTES);
+    }
     board_lock(core);
     hl_settings_load(core, place);
     board_unlock(core);

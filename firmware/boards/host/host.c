@@ -12,7 +12,8 @@ struct hl_host {
     int32_t counts;
     int16_t duty;
     uint16_t clock, step, period_us;
-    uint8_t reset_cause, in_tick;
+    uint8_t reset_cause, in_tick, tick_at; /* tick_at: HL_AT_... of the tick that comes next by itself */
+    uint32_t writes_left;                  /* bytes until the power fails */
 };
 
 static hl_host *of(hl_core *core)
@@ -78,19 +79,32 @@ void board_store_read(hl_core *core, uint16_t address, uint8_t *bytes, uint16_t 
 
 uint8_t board_store_write(hl_core *core, uint16_t address, const uint8_t *bytes, uint16_t count)
 {
-    memcpy(of(core)->store + address, bytes, count);
-    return 1;
+    hl_host *host = of(core);
+    for (uint16_t k = 0; k < count && host->writes_left; k++, host->writes_left--) {
+        host->store[address + k] = bytes[k];
+    }
+    return memcmp(host->store + address, bytes, count) == 0;
 }
 
-/* One thread calls everything here: a tick cannot come between. */
+/* One thread calls everything here: a tick comes between where a test says so, and nowhere else. */
+static void come_between(hl_core *core, uint8_t at)
+{
+    hl_host *host = of(core);
+    if (host->tick_at == at) {
+        host->tick_at = HL_AT_NO_LOCK;
+        host->in_tick = 1;
+        hl_core_tick(core);
+    }
+}
+
 void board_lock(hl_core *core)
 {
-    (void)core;
+    come_between(core, HL_AT_LOCK);
 }
 
 void board_unlock(hl_core *core)
 {
-    (void)core;
+    come_between(core, HL_AT_UNLOCK);
 }
 
 uint8_t board_reset_cause(hl_core *core)
@@ -114,6 +128,7 @@ hl_host *hl_host_new(const uint8_t *store, uint8_t reset_cause)
     if (host) {
         memcpy(host->store, store, HL_STORE_BYTES);
         host->reset_cause = reset_cause;
+        host->writes_left = UINT32_MAX;
         hl_core_start(&host->core);
     }
     return host;
@@ -184,6 +199,16 @@ const uint8_t *hl_host_store(const hl_host *host)
 uint8_t *hl_host_program(hl_host *host)
 {
     return host->core.places[host->core.active].arena.bytes;
+}
+
+void hl_host_race(hl_host *host, int at)
+{
+    host->tick_at = (uint8_t)at;
+}
+
+void hl_host_cut(hl_host *host, uint32_t bytes)
+{
+    host->writes_left = bytes;
 }
 
 void hl_host_fault(hl_host *host, int fault)

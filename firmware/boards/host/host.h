@@ -30,6 +30,11 @@ HL_EXPORT uint32_t hl_host_period_us(const hl_host *host);
 HL_EXPORT const uint8_t *hl_host_store(const hl_host *host);
 /* The first byte of the running program, for tests that damage it. */
 HL_EXPORT uint8_t *hl_host_program(hl_host *host);
+/* Let a tick come just before the next time that ticks are held off, or just after it, as an interrupt may. */
+enum { HL_AT_NO_LOCK, HL_AT_LOCK, HL_AT_UNLOCK };
+HL_EXPORT void hl_host_race(hl_host *host, int at);
+/* The power fails after so many bytes written to the store. */
+HL_EXPORT void hl_host_cut(hl_host *host, uint32_t bytes);
 HL_EXPORT void hl_host_fault(hl_host *host, int fault);
 
 #endif

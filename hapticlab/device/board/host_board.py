@@ -75,6 +75,14 @@ class HostBoard:
         """Flip bits of a byte of the active program, as a failing memory would."""
         self._library.hl_host_program(self._board)[at] ^= mask
 
+    def race(self, where):
+        """Let a tick come just "before" the next time that ticks are held off, or just "after" it, as an interrupt may."""
+        self._library.hl_host_race(self._board, {"before": 1, "after": 2}[where])
+
+    def cut_power(self, after):
+        """Let the power fail after so many bytes written to the store: what comes later is not there."""
+        self._library.hl_host_cut(self._board, after)
+
     def fail(self, fault):
         """Let the board find a fault by itself, a name in FAULTS, as its sensor or its stack would."""
         self._library.hl_host_fault(self._board, FAULTS[fault][0])
@@ -90,7 +98,8 @@ def _library(*flags):
     library.hl_host_transmit.argtypes = [board, ctypes.c_void_p, ctypes.c_uint32]
     library.hl_host_transmit.restype = ctypes.c_uint32
     library.hl_host_tick.argtypes = [board, ctypes.c_int32, ctypes.c_uint16, ctypes.c_uint16]
-    library.hl_host_fault.argtypes = [board, ctypes.c_int]
+    library.hl_host_cut.argtypes = [board, ctypes.c_uint32]
+    library.hl_host_race.argtypes = library.hl_host_fault.argtypes = [board, ctypes.c_int]
     library.hl_host_duty.argtypes = library.hl_host_period_us.argtypes = [board]
     library.hl_host_period_us.restype = ctypes.c_uint32
     library.hl_host_store.argtypes = library.hl_host_program.argtypes = [board]

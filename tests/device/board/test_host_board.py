@@ -13,6 +13,7 @@ from hapticlab.compiler.engines.bytecode import layout
 from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.board.host_board import HostBoard
 from hapticlab.device.board.run import fault_words
+from hapticlab.device.board.settings import Settings
 from hapticlab.device.link.messages import SENSORS, SETTINGS_STRUCT
 from hapticlab.device.link.wire import encode
 from hapticlab.scene.notation.symbols import n, parameters, x
@@ -785,3 +786,80 @@ def test_a_store_that_was_cut_in_the_middle_of_writing_never_runs():
 def loads(store):
     host = Host(HostBoard(store))
     return bool(host.state()["flags"] & 16)
+
+
+def at_the_start(slots):
+    """A board without a host whose very next tick starts the kept program, and the program's bytes."""
+    host = Host(HostBoard(armed(fixed(0.5)), slots=slots))
+    sweep(host, -5000, 5000, step=200)
+    probe = Host(HostBoard(host.board.store, slots=slots))
+    sweep(probe, -5000, 5000, step=200)
+    waited = 0
+    while probe.tick(0) == 0:
+        waited += 1
+    host.tick(0, times=waited - 1)  # the tick that starts it gives no force yet
+    assert host.board.duty == 0 and state_name(host.state()["state"]) == "IDLE"
+    return host, encode_program(fixed(0.25, k=2.0), word_bits=16)
+
+
+@pytest.mark.parametrize("slots", [1, 2])
+@pytest.mark.parametrize("when", ["before", "after"])
+def test_a_start_without_a_host_does_not_come_between_what_begin_looks_at_and_what_it_clears(when, slots):
+    """It did: with a tick there the program ran, READY was gone, and DATA went into its bytes."""
+    host, data = at_the_start(slots)
+    host.board.race(when)
+    begun = host.ask("BEGIN", 0, len(data))
+    said = host.ask("DATA", 0, rest=data[:40])
+    if when == "before":  # it runs: with one place nothing may be loaded
+        assert state_name(host.state()["state"]) == "RUN" and host.has("READY")
+        assert (begun, said) == (("BUSY", "RANGE") if slots == 1 else ("OK", "OK"))
+    else:  # with one place there is nothing left to start; with two the kept one is not touched
+        assert (begun, said) == ("OK", "OK")
+        assert state_name(host.state()["state"]) == ("IDLE" if slots == 1 else "RUN")
+    for _ in range(200):  # and what runs is still what was verified
+        host.tick(0)
+    assert fault_name(host.state()["fault"]) is None
+
+
+def settings_of(store):
+    """The settings that a board has after power-on with this store, or None."""
+    host = Host(HostBoard(bytes(store)))
+    host.hello()
+    read = b"".join(host.ask("READ", at, 40)["rest"] for at in range(0, SETTINGS_STRUCT.size, 40))
+    return Settings.from_bytes(read) if read else None
+
+
+def stored(store, kept, cut):
+    """The store after new settings came to a board whose power fails after so many bytes of writing."""
+    host = Host(HostBoard(bytes(store)))
+    host.hello()
+    host.board.cut_power(cut)
+    said = host.load(kept.to_bytes(), "SETTINGS")
+    assert said == ("OK" if cut >= 2 * SETTINGS_STRUCT.size else "STORE"), cut
+    return host.board.store
+
+
+def test_power_that_fails_at_any_byte_leaves_the_old_settings_or_the_new_ones():
+    """With one copy every cut but the first and the last lost the calibration. Then once more, from a torn store."""
+    old, new, newer = (settings(force_max=force, ident=k, date=20261100 + k) for k, force in enumerate((3.0, 2.0, 1.0)))
+    found, size = [], 2 * SETTINGS_STRUCT.size
+    first = stored(HostBoard(settings().to_bytes()).store, old, size)
+    assert settings_of(first) == old.to_float32()
+    for cut in range(size + 1):
+        torn = stored(first, new, cut)
+        found.append(settings_of(torn))
+        if cut < size:  # the byte that was being written may be erased
+            at = (cut + SETTINGS_STRUCT.size) % size
+            assert settings_of(torn[:at] + b"\xff" + torn[at + 1 :]) in (old.to_float32(), new.to_float32()), cut
+        for again in range(cut % 7, size + 1, 43) if cut % 13 == 0 else ():
+            assert settings_of(stored(torn, newer, again)) in (found[-1], newer.to_float32()), (cut, again)
+    assert set(map(repr, found)) == {repr(old.to_float32()), repr(new.to_float32())}
+    assert found[0] == old.to_float32() and found[-1] == new.to_float32() and found.index(new.to_float32()) <= size
+
+
+def test_one_copy_that_rots_is_not_missed():
+    whole = stored(HostBoard(settings().to_bytes()).store, settings(ident=7), 2 * SETTINGS_STRUCT.size)
+    for at in range(0, 2 * SETTINGS_STRUCT.size, 3):
+        rotten = bytearray(whole)
+        rotten[at] ^= 0x10
+        assert settings_of(rotten).ident == 7
