@@ -121,7 +121,7 @@ def bench(parser, options):
     with connect(options.port) as paddle:
         _tell_notices(paddle)
         report = first_power_up(paddle, PractisingOwner(paddle) if simulated else person, tell=print)
-    page, data = report.save(options.out)
+        page, data = report.save(options.out)
     print(f"{report.sentence}\nThe report is in {page}, and as data in {data}")
     return INTERRUPTED if report.ended.startswith("interrupted") else int(not report.is_whole)
 

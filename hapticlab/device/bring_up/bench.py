@@ -66,7 +66,8 @@ def bench(paddle: SerialPaddle, person: Person, *, tell: Callable[[Any], Any] = 
     Notes
     -----
     The motor gives at most 0.4 N until the last step, which asks first. For two steps the limits of speed and travel that the
-    board stores are lowered, and put back. The position of the handle is asked for again after that and after the cable.
+    board stores are lowered, and put back. The position of the handle is asked for again after that and after the cable. A
+    paddle whose cable was pulled is closed.
 
     Examples
     --------
@@ -102,6 +103,8 @@ def bench(paddle: SerialPaddle, person: Person, *, tell: Callable[[Any], Any] = 
         ended = f"ended in the step {name!r}: {problem}; {_motor_off(shared.paddle)}"
     finally:
         shared.paddle.abandon()
+        if shared.paddle is not paddle:
+            shared.paddle.close()  # found again after the cable was pulled; the caller's own is closed
     if shared.lowered:
         ended += f". {STILL_LOWERED}"
     return BenchReport(about | about_settings(shared.lowered or shared.paddle.settings), tuple(made), ended)
