@@ -115,16 +115,16 @@ FAULTS = {
 NOMINAL = partial(nominal, "hapkit")
 
 
-def measure(fault, emulated=emulated_uno, kept=NOMINAL, rest=0.2):
-    """Put a fault into a running board; return the time until its motor was off [s], the Telemetry and the cause.
+def measure(fault, emulated=emulated_uno, kept=NOMINAL, before=0.1, rest=0.2):
+    """Put a fault into a board that runs; return the time until its motor was off [s], the Telemetry and the cause.
 
-    From the first duty of zero on the duty stays zero for ``rest`` [s], or the time is infinite.
+    It runs for ``before`` [s]. From the first duty of zero on the duty stays zero for ``rest`` [s], or the time is infinite.
     """
     settings = kept(**{"wired": 1, "checked": 1, "ident": 1, "date": 20261120, **fault.settings})
     with emulated(HAND, T=fault.period, settings=settings) as paddle:
         paddle.start(fault.scene, check_fit=False)
         if fault.inject is not nothing:
-            paddle.wait(0.1)
+            paddle.wait(before)
             assert paddle.loop.board.duty != 0, paddle.stop().fault
         begun = paddle.loop.board.cycle
         fault.inject(paddle)

@@ -80,7 +80,7 @@ PICO_FAULTS = {
     "AS5048A's error bit": Fault("SENSOR", 2 * T, partial(spoil, how="error"), settings=ANGLE),
     "AS5048A's line": Fault("SENSOR", 2 * T, partial(spoil, how="wire"), settings=ANGLE),
 }
-measure = partial(faults.measure, emulated=emulated_pico, kept=hapkit, rest=0.05)
+measure = partial(faults.measure, emulated=emulated_pico, kept=hapkit, before=0.03, rest=0.05)
 
 if __name__ == "__main__":
     faults.print_table(PICO_FAULTS, measure)

@@ -102,7 +102,7 @@ def fuzz(frames, seed):
 
 
 @pytest.mark.wide
-@pytest.mark.parametrize("frames", [1500, pytest.param(40_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("frames", [800, pytest.param(40_000, marks=pytest.mark.slow)])
 def test_a_bad_link_never_moves_the_motor_wrongly_and_always_recovers(frames, capsys):
     count, damaged, recoveries = fuzz(frames, seed=3)
     with capsys.disabled():
