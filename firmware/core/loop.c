@@ -194,7 +194,9 @@ void hl_core_tick(hl_core *core)
     if (core->state == HL_STATE_RUN) {
         const uint16_t periods = measure(core, begin);
         hl_handle_read(core, core->first ? 1 : periods);
-        run(core, begin, periods);
+        if (core->state == HL_STATE_RUN) { /* a sensor that cannot be right has ended it */
+            run(core, begin, periods);
+        }
     } else {
         hl_handle_read(core, 1);
         hl_idle(core);

@@ -100,7 +100,7 @@ FAULTS = {
     "division by zero": Fault("NOT_FINITE", 3 * T, lambda paddle: paddle.set(y=0.0), QUOTIENT),
     "over-speed": Fault("OVER_SPEED", 3 * T, partial(push, v=4.0)),
     "over-travel": Fault("OVER_TRAVEL", 2 * T, partial(push, x=0.007), ALWAYS(K=5), settings=SHORT),
-    "sensor's wire": Fault("SENSOR", 2 * T, break_wire),
+    "sensor's wire": Fault("SENSOR", 1.2 * T, break_wire),
     "sensor frozen": Fault("FROZEN", 1.2 + 3 * T, freeze_sensor),
     "heat": Fault("OVER_HEAT", 1.57, nothing, ALWAYS, settings=HOT),
     "steps too long": Fault("OVERRUN", 20e-3, nothing, pendulum()[0], period=0.5e-3),
