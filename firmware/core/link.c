@@ -32,7 +32,6 @@ static void receive(hl_core *core)
     uint8_t reply = 0, count = 0;
     /* a board's own words come back where a line is looped: they are no host */
     if (length >= 2 && frame[0] >> 5 == HL_PROTOCOL && (frame[0] & 31) < HL_MESSAGE_ACK) {
-        core->heard = 1;
         count = hl_answer(core, frame, (uint8_t)(length - 2), core->tx + 3, &reply);
     } else {
         core->damaged++;

@@ -327,11 +327,12 @@ static uint32_t number_of(const hl_core *core, uint8_t sequence)
 static uint8_t obey_once(hl_core *core, uint8_t message, uint8_t sequence, const uint8_t *payload, uint8_t count)
 {
     const uint32_t number = number_of(core, sequence), ahead = number - core->obeyed;
-    if (ahead == 0) {
-        return core->result;
-    }
     if (ahead > 127) {
         return HL_RESULT_STALE;
+    }
+    core->heard = 1;
+    if (ahead == 0) {
+        return core->result;
     }
     core->obeyed = number;
     core->result = obey(core, message, payload, count);
@@ -397,6 +398,9 @@ uint8_t hl_answer(hl_core *core, const uint8_t *frame, uint8_t count, uint8_t *t
             memcpy(to, payload, 4);
             return 4;
         case HL_MESSAGE_STATUS:
+            if (hl_get32(payload) == core->session) {
+                core->heard = 1; /* another program on the line keeps nothing driven */
+            }
             *reply = HL_MESSAGE_STATE;
             return state_of(core, to);
         case HL_MESSAGE_READ:

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0xf36dad37UL
+#define HL_PROTOCOL_HASH 0x6490439fUL
 #define HL_SETTINGS_HASH 0xb154e035UL
 #define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
@@ -18,7 +18,7 @@
 #define HL_MESSAGES(X) \
     X(HELLO, 1, 4, 0, 0) \
     X(PING, 2, 4, 0, 0) \
-    X(STATUS, 3, 0, 0, 0) \
+    X(STATUS, 3, 4, 0, 0) \
     X(READ, 4, 3, 0, 0) \
     X(BEGIN, 5, 3, 0, 0) \
     X(DATA, 6, 2, 0, 1) \
@@ -64,6 +64,7 @@ enum {
 enum {
     HL_AT_HELLO_SESSION = 0, /* uint32_t */
     HL_AT_PING_TOKEN = 0, /* uint32_t */
+    HL_AT_STATUS_SESSION = 0, /* uint32_t */
     HL_AT_READ_OFFSET = 0, /* uint16_t */
     HL_AT_READ_COUNT = 2, /* uint8_t */
     HL_AT_BEGIN_TARGET = 0, /* uint8_t */

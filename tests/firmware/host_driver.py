@@ -79,7 +79,7 @@ class Host:
         return self.ask("HELLO", self.session)
 
     def state(self):
-        return self.ask("STATUS")
+        return self.ask("STATUS", self.session)
 
     def has(self, flag):
         return bool(self.state()["flags"] & FLAGS[flag])

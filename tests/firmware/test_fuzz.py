@@ -192,10 +192,13 @@ class Talk:
             elif act < 0.86:
                 self.send("ARM", rng.randrange(2))
             elif act < 0.87:
-                self.ticks(130)  # nobody speaks: 100 ms are too long
+                for _ in range(13):  # the host does not speak for 100 ms, whatever others on the line ask
+                    self.ticks(10)
+                    other = rng.choice((("PING", 7), ("READ", 0, 40), ("STATUS", self.session ^ 1)))
+                    self.deliver(encode(other[0], rng.randrange(256), *other[1:]))
                 self.events.append(("?", "silent", None))
             else:
-                self.send(*rng.choice((("STATUS",), ("PING", 7), ("READ", 0, 40))))
+                self.send(*rng.choice((("STATUS", self.session), ("PING", 7), ("READ", 0, 40))))
         if rng.random() < 0.7:
             self.send("STOP")
         if rng.random() < 0.02:

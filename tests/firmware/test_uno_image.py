@@ -96,7 +96,7 @@ def test_the_store_takes_longer_than_the_watchdog_waits(connect):
     print(f"settings: {loop.now - begin:.2f} s")
     assert loop.now - begin > 0.125
     assert read_settings(paddle.exchange) == changed.to_float32()
-    assert loop.board.eeprom == changed.to_bytes().ljust(1024, b"\0")
+    assert loop.board.eeprom == (2 * changed.to_bytes()).ljust(1024, b"\0")
     assert paddle.state()["session"] == session, "the board was reset"
 
 

@@ -66,7 +66,7 @@ def watched_run(image, program, every=1):
             handle.board = board
             log = paddle.run(program, duration=TICKS * 1e-3, every=every, progress=False, check_fit=False)
             handle.board = None
-            requests = [encode("STATUS", 0)] + [set_frame(paddle.exchange, n) for n in (1, 8)]
+            requests = [encode("STATUS", 0, paddle.exchange.session)] + [set_frame(paddle.exchange, n) for n in (1, 8)]
         assert log.fault is None, log.fault
         return handle, log, [board.cost(v)[2] for v in (USART_UDRE, USART_RX)], requests
 

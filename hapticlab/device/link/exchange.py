@@ -82,14 +82,16 @@ class Exchange:
         """
         with self._turn:
             self._require_my_time()
-            # a board takes one frame at a time: a heartbeat under way is answered first
-            self._wait_until(lambda: self._beat_sequence is None, HEARTBEAT / 2)
-            self._beat_sequence = None
             sequence = self._next_sequence(message)
             frame = encode(message, sequence, *values, rest=rest, session=self.session)
             self._wanted, self._reply, self._then = (message, sequence & 255), None, then
             for _ in range(tries):
-                self._send(frame)
+                if not _keeps_alive(message):
+                    self._say_present()
+                # a board takes one frame at a time: a heartbeat under way is answered first
+                self._wait_until(lambda: self._beat_sequence is None, HEARTBEAT / 2)
+                self._beat_sequence = None
+                self._send(frame, _keeps_alive(message))
                 if self._wait_until(lambda: self._reply is not None, patience):
                     return self._reply
         raise LinkError(
@@ -110,7 +112,7 @@ class Exchange:
 
     def refresh(self):
         """Ask for the board's state and return its fields."""
-        return self.ask("STATUS").fields
+        return self.ask("STATUS", self.session).fields
 
     def wait(self, condition, seconds):
         """Read until condition() holds; return whether it did within so many seconds of the port's time."""
@@ -168,7 +170,7 @@ class Exchange:
     def _next_sequence(self, message):
         return next(self._sequences[MESSAGES[message].guarded])
 
-    def _send(self, frame):
+    def _send(self, frame, keeps_alive=True):
         self.check()
         self._last_sent = self.now()
         begun = self.presence.now()
@@ -237,13 +239,17 @@ class Exchange:
 
     def _beat(self):
         """Say that the host is there, unless a request said so or waits for its reply."""
-        if not self.beating or self.now() - self._last_sent < HEARTBEAT or not self._turn.acquire(blocking=False):
-            return
-        try:
+        if self._turn.acquire(blocking=False):
+            try:
+                self._say_present()
+            finally:
+                self._turn.release()
+
+    def _say_present(self):
+        """Say it where it is due; whoever calls has the turn."""
+        if self.beating and self.now() - self._last_sent >= HEARTBEAT:
             self._beat_sequence = self._next_sequence("STATUS") & 255
-            self._send(encode("STATUS", self._beat_sequence))
-        finally:
-            self._turn.release()
+            self._send(encode("STATUS", self._beat_sequence, self.session))
 
     def _read_for_ever(self):
         while not self.closed:
@@ -266,6 +272,11 @@ class Exchange:
 
 #: which message answers which request, where it is not ACK
 _ANSWERS = {"HELLO": ("WELCOME",), "PING": ("PONG",), "STATUS": ("STATE",), "READ": ("BYTES",)}
+
+
+def _keeps_alive(message):
+    """Whether a board takes a message for the word of the session that drives it."""
+    return MESSAGES[message].guarded or message in ("HELLO", "STATUS")
 
 
 def _result(number):

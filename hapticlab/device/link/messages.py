@@ -15,6 +15,9 @@ long ago, or damaged where CRC-16 does not see it, moves nothing. STOP is guarde
 obeyed after it; it stops the motor whatever its guard says. COMMIT names the CRC-32 that the upload ends with. HELLO with a
 new number begins a session: nothing runs, nothing is loaded.
 
+Only a session's own frames keep its scene driven: guarded requests with the right guard, HELLO, and STATUS, which names the
+session. PING, READ, BEGIN and DATA are answered whoever sends them, and keep nothing alive.
+
 A change of what a message means needs another name of a field at least, so that the table hash changes with it.
 """
 
@@ -61,7 +64,7 @@ def fields(text):
 MESSAGES = {
     "HELLO": Message(1, fields("I session")),
     "PING": Message(2, fields("I token")),
-    "STATUS": Message(3),
+    "STATUS": Message(3, fields("I session")),
     "READ": Message(4, fields("H offset, B count")),
     "BEGIN": Message(5, fields("B target, H size")),
     "DATA": Message(6, fields("H offset"), open=True),

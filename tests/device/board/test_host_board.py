@@ -394,13 +394,38 @@ def test_100_ms_without_the_host_are_a_fault(T, ticks):
 
 
 @pytest.mark.parametrize("noise", [
-    b"\0" * 50, b"\x55" * 50 + b"\0", encode("STATUS", 1)[:-2] + b"\x01\0", encode("ACK", 1, 0, 0, 0)])  # fmt: skip
+    b"\0" * 50, b"\x55" * 50 + b"\0", encode("STATUS", 1, 12345)[:-2] + b"\x01\0", encode("ACK", 1, 0, 0, 0)])  # fmt: skip
 def test_noise_is_no_host(noise):
     host = Host().running()
     for _ in range(101):
         host.board.receive(noise)
         host.tick(500)
     stands(host, "HOST_SILENT", 100)
+
+
+@pytest.mark.parametrize("stranger", [("PING", 7), ("PING", 12345), ("READ", 0, 40), ("STATUS", 0), ("STATUS", 999),
+                                      ("BEGIN", 0, 100), ("DATA", 0)], ids=str)  # fmt: skip
+def test_another_program_on_the_port_keeps_no_scene_driven(stranger):
+    """It did: any valid frame was taken for the host's word. Now 100 ms after the session's own last word the motor is off."""
+    host = Host().running()
+    for k in range(101):
+        host.board.receive(encode(stranger[0], k & 255, *stranger[1:]))
+        host.tick(500 + k % 3)
+    stands(host, "HOST_SILENT", 100)
+
+
+def test_guarded_frames_of_another_session_or_of_long_ago_keep_nothing_driven_and_ones_own_do():
+    host = Host().running(_0=100.0)
+    old = host.frame("SET", 1, rest=b"\0" + np.float32(100.0).tobytes())
+    assert host.set(_0=100.0) == "OK"
+    for k in range(150):
+        assert host.set(_0=100.0) == "OK" and host.tick(500 + k % 3) != 0
+    stranger = Host(host.board, session=999)
+    for k in range(101):
+        stranger.board.receive(stranger.frame("CLEAR"))
+        host.board.receive(old)
+        host.tick(500 + k % 3)
+    stands(host, "HOST_SILENT")
 
 
 def test_a_division_by_zero_is_a_fault_in_its_tick():
@@ -689,7 +714,7 @@ def test_samples_without_room_are_counted_as_lost():
         host.board.tick(0, host.t)
         host.t += 1e-3
         if k % 50 == 0:
-            host.board.receive(encode("STATUS", 1))
+            host.board.receive(encode("STATUS", 1, host.session))
     host.hear()
     host.tick(beat=True)
     state = host.state()

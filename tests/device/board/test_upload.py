@@ -4,11 +4,13 @@ import pytest
 from bad_line import lossy_port
 from host_driver import fixed, settings, spring
 
+import hapticlab as hl
 from hapticlab.compiler.engines.bytecode import encode
+from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.board.settings import nominal
 from hapticlab.device.board.upload import PIECE, check_room, read_settings, upload
 from hapticlab.device.link.exchange import Exchange
-from hapticlab.device.link.messages import LARGEST_PAYLOAD, TARGETS
+from hapticlab.device.link.messages import LARGEST_PAYLOAD, MESSAGES, STATES, TARGETS
 from hapticlab.errors import LinkError, PaddleError
 
 
@@ -94,3 +96,25 @@ def test_a_period_the_board_cannot_do_is_refused_with_the_nearest_it_can(T, kept
 def test_a_period_it_can_do_passes():
     check_room(UNO, nominal("hapkit"), spring(K=1.0, T=2e-3))
     check_room(UNO, None, spring(K=1.0, T=10e-3))
+
+
+def test_a_slow_upload_does_not_let_the_running_scene_fall_silent():
+    """Pieces of a program are no word of the host to the board: between them it says that it is there."""
+    lost = 0
+
+    def heard(frame):
+        nonlocal lost
+        if frame is None or frame.message != "ACK" or frame.fields["request"] != MESSAGES["DATA"].number:
+            return True
+        lost += 1
+        return lost % 6 == 0  # five tries of 30 ms each for every piece
+
+    port = lossy_port(heard=heard)
+    with SerialPaddle("sim://hapkit", port=port) as paddle:
+        paddle.home(at=port.handle.x)
+        k = hl.parameters("k", units="N/m")
+        paddle.start(hl.Scene(force=k * hl.x(hl.n), name="spring")(k=10.0))
+        begun = paddle.exchange.now()
+        upload(paddle.exchange, "PROGRAM", encode(spring(), word_bits=16))
+        assert paddle.exchange.now() - begun > 0.3 and lost > 10
+        assert paddle.state()["state"] == STATES["RUN"]
