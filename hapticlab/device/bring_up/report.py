@@ -88,7 +88,8 @@ class Finding:
         """A row of the report's table."""
         note = f" ({self.note})" if self.note and self.found is not None else ""
         found = self.note if self.found is None else self._found() + note
-        return f"| {self.step} | {self.quantity} | {self.predicted} | {found} | {self.verdict} | {self.source} |"
+        cells = (self.step, self.quantity, self.predicted, found, self.verdict, self.source)
+        return "| " + " | ".join(" ".join(cell.split()).replace("|", "\\|") for cell in cells) + " |"
 
     def _found(self):
         return f"{self.found} {self.unit}".strip() if isinstance(self.found, str) else f"{self.found:.4g} {self.unit}"

@@ -247,3 +247,8 @@ def test_a_number_that_is_not_finite_is_never_as_predicted():
     assert Finding.of("a", "b", float("nan"), "s", 0, 1, "").verdict == "differs"
     assert Finding.of("a", "b", float("inf"), "s", 0, float("inf"), "").verdict == "differs"
     assert Finding.of("a", "b", 1.0, "s", 0, 1, "").verdict == "as predicted"
+
+
+def test_a_row_is_one_line_of_six_cells_whatever_was_said():
+    row = Finding.seen("cable", "the step", False, "|F| <= 2 N\nand more", "the board").row()
+    assert row == r"| cable | the step |  | \|F\| <= 2 N and more | differs | the board |"
