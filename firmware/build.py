@@ -31,11 +31,9 @@ CLANG_FLAGS = (
 BOOT2, FLASH_AT, RAM_AT = 252, 0x10000000, 0x20000000
 #: what the tick runs is made fast; a file of which it runs a few products is made small, one of which it runs nothing smaller
 FAST, SMALL, SMALLEST = ("-O2",), ("-Os",), ("-Os", "-mcall-prologues")
-SIZES = dict.fromkeys(("core/wire.c", "boards/uno/main.c"), SMALL)
+SIZES = dict.fromkeys(("core/handle.c", "core/wire.c", "boards/uno/main.c"), SMALL)
 SIZES |= {f"boards/uno/{name}.c": SMALLEST for name in ("store", "wiring")}
-SIZES |= {
-    f"core/{name}.c": SMALLEST for name in ("handle", "heat", "idle", "link", "message", "reading", "place", "store", "verify")
-}
+SIZES |= {f"core/{name}.c": SMALLEST for name in ("heat", "idle", "link", "message", "place", "store", "verify")}
 LINKING = ("-mrelax", "-Wl,--gc-sections")  # short calls where they reach
 BUILT = {name: board for name, board in BOARDS.items() if board.flashing}
 

@@ -74,11 +74,14 @@ void hl_motor(hl_core *core, float force)
         part = HL_ONE - 1;
         duty = HL_DUTY_FULL;
     } else if (bits) {
-        const uint16_t above = (uint16_t)(bits >> 8) | 0x8000;
-        part = part_of(bits & 0x80 && above < HL_ONE - 1 ? above + 1 : above, exponent);
-        uint16_t along = part;
+        uint16_t along;
         if (core->settings.motor_law == HL_MOTOR_SQRT) {
             along = part_of(root_of(bits), (uint8_t)((exponent + 127) >> 1));
+            part = (uint16_t)((uint32_t)along * along >> 16);
+            part = (uint16_t)(part + (part < HL_ONE - 1)); /* rounded up: of this is the heat */
+        } else {
+            const uint16_t above = (uint16_t)(bits >> 8) | 0x8000;
+            part = along = part_of(bits & 0x80 && above < HL_ONE - 1 ? above + 1 : above, exponent);
         }
         duty = duty_of(core->curve, along);
     }

@@ -98,8 +98,10 @@ float hl_handle_fade(hl_core *core, float force)
     if (hl_handle_outside(core, core->limits.span >> 3)) {
         return force; /* there nothing moves */
     }
-    s->gain -= s->gain_step;
-    if (s->gain <= 0.0f) {
+    hl_slot left;
+    left.f = s->gain - s->gain_step;
+    s->gain = left.f;
+    if (left.i <= 0) { /* zero or less, by its sign */
         hl_core_fault(core, HL_FAULT_FROZEN, force);
         return 0.0f;
     }

@@ -71,6 +71,26 @@ def watched_run(image, program, every=1):
         return handle, log, [board.cost(v)[2] for v in (USART_UDRE, USART_RX)], requests
 
 
+HELD = 0.02  # where a handle is held whose force fades out [m]
+
+
+def faded(image):
+    """Return the cycles of ticks in which a force fades out, of a handle that does not move for longer than a second."""
+    kept = replace(nominal("hapkit"), wired=1, checked=1)
+    with Uno(image, eeprom=kept.to_bytes()) as board:
+        handle = Watched(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
+        handle.handle.step = lambda force: None
+        with hl.connect(offer("faded", ClosedLoop.of(kept.to_float32(), board, handle))) as paddle:
+            paddle.home(at=HELD)
+            paddle.start(springs(5), every=RARELY, check_fit=False)
+            paddle.set(k=60)
+            paddle.wait(1.05)
+            handle.board = board
+            paddle.wait(0.4)
+            handle.board = None
+    return quiet(handle)
+
+
 def set_frame(exchange, count):
     """Return a SET of the first parameter, ``count`` times, as the board would obey it next."""
     rest = count * (b"\0" + np.float32(123.4).tobytes())
@@ -180,6 +200,10 @@ def measure_step():
             machine = np.median(Bench(program, cpu).run(log.x[:, None])[2])
             typical.append(np.median(quiet(handle)) - machine)
         most = max(quiet(handle)) - machine  # springs: with every channel, in a tick of heat and record
+        few, log, _, _ = watched_run(image, springs(0), every=RARELY)
+        channel = (most - max(quiet(few)) + np.median(Bench(springs(0), cpu).run(log.x[:, None])[2])) / 5
+        fading = max(faded(image)) - np.median(Bench(springs(5), cpu).run(np.full((20, 1), HELD))[2])
+        most = max(most, fading)
         late = max(latest(image, values) for values in (1, 8))
         more = awkward_more(elf, handle.snapshots)
         heat = heat_cycles(elf, handle.snapshots)
@@ -194,7 +218,7 @@ def measure_step():
         "step": [round(np.mean(typical[:2])), round(most) + SOONEST, SOONEST + round((most + more) * (1 + SEARCH_MARGIN))],
         "frame": [round(frames[0][1] - per_byte * frames[0][0]), round(per_byte, 1)],
         "answers": {"STATUS": [status], "SET": [round(one - each), round(each)]},
-        "heat": heat, "sample_bytes": OVERHEAD, "late": round(late), "edge": EDGE,
+        "channel": int(channel), "heat": heat, "sample_bytes": OVERHEAD, "late": round(late), "edge": EDGE,
         "sent_byte": round(udre) + ANSWERED, "received_byte": round(rx) + ANSWERED,
     }  # fmt: skip
 

@@ -224,19 +224,23 @@ __addsf3:
     ori r25, 0x80
 1:  ret
 
-; Shift r24:r22 and r31 left until the hidden bit is set, or r25 is 1. Not of zero. r26 and r30 are lost.
-hl_float_normalise:
-    tst r24
-    brne 1f
+; Shift r24:r22 and behind left until the hidden bit is set, or r25 is 1. Not of zero. r26 and r30 are lost.
+.macro normalise behind
+1:  tst r24
+    brne 2f
     cpi r25, 9
-    brlo 2f
+    brlo 5f
     subi r25, 8
     mov r24, r23
     mov r23, r22
-    mov r22, r31
-    clr r31
-    rjmp hl_float_normalise
-1:  clr r30
+    .ifnb \behind
+    mov r22, \behind
+    clr \behind
+    .else
+    clr r22
+    .endif
+    rjmp 1b
+2:  clr r30
     mov r26, r24
     cpi r26, 0x10
     brsh 3f
@@ -250,10 +254,10 @@ hl_float_normalise:
 4:  sbrs r26, 7
     inc r30
     cp r30, r25
-    brlo 5f
-2:  mov r30, r25
+    brlo 6f
+5:  mov r30, r25
     dec r30
-5:  sub r25, r30
+6:  sub r25, r30
     power_of_two r26, r30
     mul r24, r26
     mov r24, r0
@@ -263,10 +267,16 @@ hl_float_normalise:
     mul r22, r26
     or r23, r1
     mov r22, r0
-    mul r31, r26
+    .ifnb \behind
+    mul \behind, r26
     or r22, r1
-    mov r31, r0
+    mov \behind, r0
+    .endif
     clr zero
+.endm
+
+hl_float_normalise:
+    normalise r31
     ret
 
 ; Exponents and mantissas apart; on to `rare_a` unless a is normal, to `rare_b` if b alone is not.
@@ -395,41 +405,6 @@ __mulsf3:
 .Llarge:
     rjmp .Linfinity
 
-.Lmul_rare_a:
-    cpi r25, 255
-    breq .Lmul_special
-    cpi r21, 255
-    breq .Lmul_special
-    tst r21
-    brne 1f
-    rjmp .Lzero         ; both are below the least normal number
-.Lmul_rare_b:
-    cpi r21, 255
-    breq .Lmul_special
-    movw r30, r22
-    movw r22, r18
-    movw r18, r30
-    movw r30, r24
-    movw r24, r20
-    movw r20, r30
-1:  sec
-    ror r20
-    lsr r24             ; a is the denormal one
-    mov r30, r24
-    or r30, r23
-    or r30, r22
-    breq .Lmul_zero
-    mov r25, r21
-    clr r21
-    subi r25, 127       ; the product's exponent less 1, where a's is 1
-    brlo 2f
-    inc r25             ; as far to the left as it may be without becoming a denormal again
-    clr r31
-    rcall hl_float_normalise
-    dec r25
-    rjmp .Lmul_mantissas
-2:  com r21             ; a denormal, however many leading zeros a has
-    rjmp .Lmul_mantissas
 .Lmul_zero:
     rjmp .Lzero
 .Lmul_special:
@@ -457,6 +432,42 @@ __mulsf3:
     rjmp .Linfinity
 .Lmul_nan:
     rjmp .Lnan
+.Lmul_small:
+    com r21             ; a denormal, however many leading zeros a has
+    rjmp .Lmul_mantissas
+.Lmul_rare_a:
+    cpi r25, 255
+    breq .Lmul_special
+    cpi r21, 255
+    breq .Lmul_special
+    tst r21
+    brne 1f
+    rjmp .Lzero         ; both are below the least normal number
+.Lmul_rare_b:
+    cpi r21, 255
+    breq .Lmul_special
+    movw r30, r22
+    movw r22, r18
+    movw r18, r30
+    movw r30, r24
+    movw r24, r20
+    movw r20, r30
+1:  sec
+    ror r20
+    lsr r24             ; a is the denormal one
+    mov r30, r24
+    or r30, r23
+    or r30, r22
+    breq .Lmul_zero
+    mov r25, r21
+    clr r21
+    subi r25, 127       ; the product's exponent less 1, where a's is 1
+    brsh 2f
+    rjmp .Lmul_small
+2:  inc r25             ; as far to the left as it may be without becoming a denormal again
+    normalise
+    dec r25
+    rjmp .Lmul_mantissas
 
     .global __divsf3
 __divsf3:
@@ -482,8 +493,8 @@ __divsf3:
     mov r0, r30
 2:  mov r26, r31
     mov r31, r30
-    ldi r30, 1          ; leaves with the eighth bit
-3:  lsl r22
+    .rept 8             ; eight bits of the quotient, zero for one
+    lsl r22
     rol r23
     rol r24
     brcs 4f
@@ -495,12 +506,13 @@ __divsf3:
     sbc r23, r19
     sbc r24, r20
     clc
-5:  rol r30             ; zero for one
-    brcc 3b
+5:  rol r30
+    .endr
     com r30
     dec r0
-    brne 2b
-    sec
+    breq 6f
+    rjmp 2b
+6:  sec
     ror r26
     ror r31
     ror r30

@@ -30,6 +30,8 @@ TYPICAL_ERROR = 0.1
 SEARCH_MARGIN = 0.02
 #: x and v, which a sample holds beside the program's outputs
 OWN_CHANNELS = 2
+#: channels of the sample in the longest step that was measured
+STEP_CHANNELS = 8
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,8 @@ class Cost(ShowsItself):
         Cycles at most that the first tick takes besides, to make the first states.
     step : (int, int, int)
         Cycles of the rest of a control step: sensor, position, safety, motor, record. Typical; the most that was measured
-        in motion, and 8 us to set the next tick; the bound: that, what awkward operands were found to add, and 2 %.
+        in motion or while a force fades, and 4 us to set the next tick; the bound: that, what awkward operands were found
+        to add, and 2 %.
     traffic : Traffic
         What the link takes.
     late : int
@@ -283,10 +286,12 @@ def _cost(program, given, data, far, every, edges_per_second):
     typical = round(outside + sum(of[op][0] for op in tick) + sum((of[op][2] - of[op][0]) * part for op, part in far))
     worst = outside + sum(of[op][1] for op in tick)
     bounds = [math.ceil(cycles * (1 + SEARCH_MARGIN)) for cycles in (worst, first)]
+    spared = table.get("channel", 0) * max(0, STEP_CHANNELS - size["outputs"] - OWN_CHANNELS)
+    step = table["step"][0], *(most - spared for most in table["step"][1:])
     traffic = Traffic.of(table, channels=size["outputs"] + OWN_CHANNELS, parameters=len(program.parameters), every=every)
     return Cost(
         program.name, given, at.period_us * 1e-6, len(tick), *shape, typical, *bounds,
-        tuple(table["step"]), traffic, table["late"], table["edge"] * edges_per_second, table["source"], program,
+        step, traffic, table["late"], table["edge"] * edges_per_second, table["source"], program,
     )  # fmt: skip
 
 
