@@ -1,8 +1,8 @@
 """Cortex-M processors under unicorn: the bits of the machine, and cycles by a model, which nobody has measured.
 
 Unicorn executes instructions and knows no cycles. The model adds, for every instruction executed, what the processor's
-technical reference manual says (Cortex-M0+: DDI 0484C, table 3-1; Cortex-M4: DDI 0439B, table 3-1 and 7-1), memory
-without wait states. A multiplication takes 1 cycle on the M0+, as on an RP2040; a pipeline refill 3 on the M4.
+technical reference manual says (Cortex-M4: DDI 0439B, table 3-1 and 7-1), memory without wait states, and 3 for a pipeline
+refill.
 """
 
 import functools
@@ -27,19 +27,6 @@ def _count(operands):
         ends = [int(n) for n in re.findall(r"[rs](\d+)", part)]
         count += ends[1] - ends[0] + 1 if len(ends) == 2 else 1
     return count
-
-
-def m0plus_cycles(name, operands):
-    """Cycles of one instruction; of a conditional branch, not taken."""
-    if name in ("push", "pop", "ldmia", "stmia") or name.startswith(("ldm", "stm")):
-        return 1 + _count(operands) + (2 if name == "pop" and "pc" in operands else 0)
-    if name.startswith(("ldr", "str")):
-        return 2
-    if name.startswith("bl") and not name.startswith(("bls", "blt", "ble", "blx")):
-        return 3
-    if name in ("bx", "blx", "b.n", "b", "b.w") or (name == "mov" and operands.startswith("pc")):
-        return 2
-    return 1
 
 
 REFILL = 3  # cycles of the M4 after a taken branch, 1 to 3
@@ -68,7 +55,6 @@ def m4_cycles(name, operands):
 
 #: name -> (compiler flags, unicorn's model, cycles of an instruction, more cycles of a conditional branch taken)
 PROCESSORS = {
-    "cortex-m0+": (("-mcpu=cortex-m0plus",), "UC_CPU_ARM_CORTEX_M0", m0plus_cycles, 1),
     "cortex-m4f": (
         ("-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"), "UC_CPU_ARM_CORTEX_M4", m4_cycles, REFILL,
     ),
@@ -109,7 +95,7 @@ class Cortex:
 
     Parameters
     ----------
-    name : {"cortex-m0+", "cortex-m4f"}
+    name : {"cortex-m4f"}
     counting : bool
         False: cycles are not counted, which is faster.
     """

@@ -105,10 +105,6 @@ class Pico:
         """Reset; RAM stays as it is, but for power."""
         self._ask("reset", cause=cause)
 
-    def power_off(self):
-        """Take the supply away, in the middle of whatever it does; :meth:`reset` with POWER brings it back."""
-        self._ask("powerOff")
-
     def run(self, seconds):
         """Run this much longer."""
         self.run_to(self.cycle + round(seconds * CYCLES_PER_SECOND))

@@ -32,7 +32,6 @@ const SET = {
 const DO = {
     load: ({ flash }) => { for (const [at, text] of flash) chip.flash.set(unhex(text), at); },
     reset: ({ cause }) => { chip.reset(cause); },
-    powerOff: () => rom.powerOff(),
     run: ({ to }) => chip.runTo(to),
     duties: () => ({ cycles: motor.cycles, duties: motor.duties }),
     levels: ({ pins }) => ({ levels: pins.map((pin) => motor.level(pin)) }),

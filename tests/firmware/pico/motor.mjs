@@ -9,7 +9,7 @@ export class Motor {
     constructor(chip) {
         this.chip = chip;
         this.drive = "PWM_DIRECTION", this.pins = [];
-        this.cycles = [], this.duties = [], this.updates = [], this.pinLog = new Map();
+        this.cycles = [], this.duties = [];
         chip.onReset.push((rp) => this.#watch(rp));
     }
 
