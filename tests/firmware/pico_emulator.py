@@ -55,6 +55,8 @@ class Pico:
         Why the processor stands.
     configured : bool
         Whether the host has found a serial port on its USB.
+    unsent : int
+        Packets that wait for the board to take them.
     """
 
     hz = CYCLES_PER_SECOND
@@ -66,7 +68,7 @@ class Pico:
             ["node", "--stack-size=4000", HERE / "emulator.mjs"], stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
         self._ended = weakref.finalize(self, _end, self._node)
-        self.cycle, self.duty, self.halted, self.configured = 0, 0.0, None, False
+        self.cycle, self.duty, self.halted, self.configured, self.unsent = 0, 0.0, None, False, 0
         self._set, self._received = [], bytearray()
         blocks = [(0, flash)] if flash else parse_uf2(Path(image).read_bytes(), str(image))
         self._ask("load", flash=[(at % FLASH_AT, bytes(data).hex()) for at, data in blocks])
@@ -92,7 +94,7 @@ class Pico:
         if "error" in answer:
             raise RuntimeError(answer["error"])
         self.cycle, self.duty, self.halted = answer["cycle"], 256 * answer["duty"], answer["halted"]
-        self.configured = answer["configured"]
+        self.configured, self.unsent = answer["configured"], answer["unsent"]
         self._received += bytes.fromhex(answer["in"])
         return answer
 

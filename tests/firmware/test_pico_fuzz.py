@@ -57,6 +57,8 @@ class Board:
             self.board.write(data[:size])
             data = data[size:]
         self.board.run(TICK)
+        while self.board.unsent:
+            self.board.run(TICK)
 
     def judge(self, sessions):
         assert self.board.halted is None

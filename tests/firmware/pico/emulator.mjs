@@ -92,7 +92,7 @@ for (const line of lines()) {
     try {
         for (const [what, ...given] of request.set ?? []) SET[what](...given);
         const more = DO[request.do](request) ?? {};
-        answer({ cycle: chip.cycle, duty: motor.duty, in: hex(usb.take()), halted: chip.halted, configured: usb.configured, ...more });
+        answer({ cycle: chip.cycle, duty: motor.duty, in: hex(usb.take()), halted: chip.halted, configured: usb.configured, unsent: usb.sending.length, ...more });
     } catch (problem) {
         answer({ error: problem.stack });
     }
