@@ -12,6 +12,7 @@ from wired import HAND, PADDLES, SPRING, duties_of_ticks, expected_duty, high_pi
 
 from hapticlab.compiler.engines.engine import load
 from hapticlab.device.board.settings import Settings, changed, pin_word, pins_of
+from hapticlab.device.board.upload import upload
 from hapticlab.device.link.messages import DRIVES, LOOP_SETTINGS, SENSORS
 from hapticlab.device.paddle import Paddle
 from hapticlab.device.wiring import Wiring
@@ -100,6 +101,20 @@ def test_a_reset_in_the_middle_takes_the_motor_off_at_once(name):
             board.run(0.05)
             cycles, duties = board.duties()
             assert not duties[cycles > begun].any() and board.driver.conflicts == 0
+
+
+def test_another_wiring_lets_go_of_all_pins_until_it_is_confirmed():
+    after = PADDLES["analog pins as inputs"]
+    with connected("motor_shield") as paddle:
+        board = paddle.loop.board
+        assert board.high(7) == 0, "the shield's outputs are on"
+        for wired, level in ((0, -1), (1, 0)):
+            kept = changed(after, wired=wired, checked=0)
+            upload(paddle.exchange, "SETTINGS", kept.to_bytes())
+            assert [board.high(pin) for pin in pins_of(after.motor_pins)] == [level] * 3
+            assert [board.high(pin) for pin in (4, 7)] == [-1, -1], "pins of the shield"
+            assert set(high_pins(board)) == {9}, "only the sensor's chip select"
+        assert board.driver.conflicts == 0
 
 
 def test_the_shield_holds_nothing_when_its_outputs_are_enabled():
