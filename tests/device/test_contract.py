@@ -13,7 +13,10 @@ from pico_emulator import missing as missing_pico
 from pico_loop import emulated_pico
 
 from hapticlab.base.telemetry import Telemetry
+from hapticlab.device.board.serial_paddle import SerialPaddle
+from hapticlab.device.board.settings import nominal
 from hapticlab.device.hand.hand import Hand
+from hapticlab.device.link.serial_ports import open_port
 from hapticlab.device.paddle import Paddle
 from hapticlab.device.setup.connect import connect
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
@@ -33,6 +36,8 @@ PADDLES = {
 }
 #: the same mechanics behind the whole protocol
 BEHIND_A_PORT = ("pushed", "encoder", "late", "everything")
+#: a Hapkit whose sensor takes so long from its last count back to its first, which the hand leads it over [us]
+FLIGHTS = [pytest.param(f"sim:// flight {us}", marks=() if us == 200 else pytest.mark.wide) for us in (0, 50, 100, 200)]
 k, x_o = parameters("k x_o", units="N/m m")
 z = coordinate("z", unit="m")
 WALL = Scene(force=when(x(n) >= x_o, k * (x(n) - x_o)), name="wall")
@@ -50,7 +55,7 @@ def pico():
 PICO = pytest.param("emulated Pico", marks=pytest.mark.wide)
 
 
-@pytest.fixture(params=[*PADDLES, *(f"sim:// {name}" for name in BEHIND_A_PORT), "emulated Uno", PICO])
+@pytest.fixture(params=[*PADDLES, *(f"sim:// {name}" for name in BEHIND_A_PORT), *FLIGHTS, "emulated Uno", PICO])
 def paddle(request):
     url = request.config.getoption("--port")
     if url:  # a person's board is asked in the place of the first, and the others are left alone
@@ -65,6 +70,12 @@ def paddle(request):
             yield board
     elif request.param == "emulated Pico":
         yield request.getfixturevalue("pico")
+    elif request.param.startswith("sim:// flight"):
+        port = open_port("sim://hapkit")
+        told = nominal("hapkit", wired=1, checked=1, sensor_flight=float(request.param.split()[2]) * 1e-6)
+        port.put_on(SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=HAND), settings=told)
+        with SerialPaddle("sim://hapkit", port=port) as board:
+            yield board
     elif request.param.startswith("sim://"):
         mechanics = PADDLES[request.param.split()[1]]()
         with connect("sim://hapkit", paddle=mechanics, T=mechanics.T) as board:
@@ -104,6 +115,13 @@ def test_states_of_a_scene_are_recorded_when_watched(paddle):
     mass = Scene(force=coupler, eom=[sp.Eq(m * z.diff(t, 2), coupler)], watch=[z])
     log = paddle.run(mass(m=0.1, K=100, c=1), duration=0.05)
     assert log.z.shape == log.t.shape and log.units["z"] == "m"
+
+
+@pytest.mark.parametrize("paddle", FLIGHTS, indirect=True)
+def test_a_run_over_the_ends_of_an_angle_sensor_is_whole(paddle):
+    """The hand leads an angle sensor over its end six times a second."""
+    log = paddle.run(WALL(k=150, x_o=0.001), duration=2.0)
+    assert log.fault is None and len(log) == round(2.0 / paddle.T)
 
 
 def test_runs_are_independent(paddle):

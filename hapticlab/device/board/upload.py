@@ -57,9 +57,13 @@ def check_period(board, T, settings=None):
     if settings is not None and settings.sensor != SENSORS["QUADRATURE"]:
         # the sensor is read once a period; 3/8 of its counts a period are what the firmware still tells from a turn over
         unseen = 0.375 * settings.wrap * abs(settings.metres_per_count) / settings.speed_max
-        if high > unseen:
+        if T > unseen and high > unseen:
             high = math.floor(unseen * 1e6) * 1e-6
             why = f", because at speed_max = {settings.speed_max:g} m/s its magnet must not make half a turn between two samples"
+        # it trusts no reading in flight, and decides with the next one: two of one flight would be taken for a motion
+        if T < settings.sensor_flight:
+            low = max(low, math.ceil(settings.sensor_flight * 1e6 - 1e-6) * 1e-6)
+            why = f", because its sensor takes {settings.sensor_flight:g} s from its last count back to its first"
     if not low * (1 - 1e-9) <= T <= high * (1 + 1e-9):
         nearer = low if T < low else high
         raise PaddleError(f"T = {T:g} s; this board needs {low:g} to {high:g} s{why}. Use T={nearer:g}")

@@ -85,6 +85,11 @@ UNO = {"period_min": 250, "period_max": 10_000, "channels": 8}
         (20e-3, settings(), r"T = 0.02 s; this board needs 0.00025 to 0.01 s. Use T=0.01"),
         (1e-4, settings(), r"T = 0.0001 s; this board needs 0.00025 to 0.01 s. Use T=0.00025"),
         # 3/8 of 920 counts of 12.8 um at 2 m/s: 2.208 ms
+        (
+            2e-4,
+            nominal("hapkit", sensor_flight=3e-4),
+            r"needs 0.0003 to 0.01 s, because its sensor takes 0.0003 s .* Use T=0.0003",
+        ),
         (4e-3, nominal("hapkit"), r"needs 0.00025 to 0.002208 s, because at speed_max = 2 m/s its magnet .* Use T=0.002208"),
     ],
 )
