@@ -218,10 +218,25 @@ def worse(columns):
     return lines
 
 
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "boards.md"
+BEGIN, END = "<!-- written by tests/benchmarks/hapkit.py --page -->\n", "<!-- end -->\n"
+
+
+def write_page(columns):
+    """Write the table into docs/boards.md."""
+    lines = ["| | " + " | ".join(columns) + " |", "|" + (len(columns) + 1) * "---|"]
+    for what, path, factor, form, _ in ROWS:
+        cells = [shown(number(figures, path), None, factor, form).strip() for figures in columns.values()]
+        lines.append(f"| {what.strip()} | {' | '.join(cells)} |")
+    before, _, rest = PAGE.read_text("utf-8").partition(BEGIN)
+    PAGE.write_text(before + BEGIN + "\n" + "\n".join(lines) + "\n\n" + END + rest.partition(END)[2], "utf-8")
+
+
 def main(arguments=None):
     """Measure, print the table, and write the JSON."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", metavar="FILE", help="also write the numbers to FILE")
+    parser.add_argument("--page", action="store_true", help="also write the table into docs/boards.md")
     options = parser.parse_args(arguments)
     if missing():
         raise SystemExit(missing())
@@ -233,6 +248,8 @@ def main(arguments=None):
         print(f"{what:<43}" + "".join(f"{shown(value, values[0], factor, form):>19}" for value in values))
     print(f"\n{SKETCHES[-1][0]}: the interrupt of the Arduino core's clock taken out of the sketch; none is published like that.")
     print("Where hapticlab's firmware does worse:\n" + "\n".join(worse(columns) or ["nowhere"]))
+    if options.page:
+        write_page(columns)
     if options.json:
         Path(options.json).write_text(json.dumps(columns, indent=1, default=float) + "\n")
 

@@ -32,6 +32,10 @@ void __vector_uart_rare(void)
     hl_core_byte(&uno_core, received);
 }
 
+/* near the vectors, so that the jump to them is the shorter one */
+void USART_RX_vect(void) __attribute__((section(".lowtext")));
+void USART_UDRE_vect(void) __attribute__((section(".lowtext")));
+
 ISR(USART_RX_vect, ISR_NAKED)
 {
     __asm__ volatile(SAVE
