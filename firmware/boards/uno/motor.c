@@ -1,4 +1,4 @@
-/* Motor: what a tick does with the driver's pins. Which they are, drive.c has put into uno_motor. */
+/* Motor: what a tick does with the driver's pins. Which they are, wiring.c has put into uno_motor. */
 #include "uno.h"
 
 #include <avr/interrupt.h>

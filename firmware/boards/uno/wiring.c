@@ -117,7 +117,7 @@ static void set_pwm(uno_way *way, uint8_t pin)
 static void enable_shield(uint8_t pin)
 {
     uint8_t k = 0;
-    while (pgm_read_byte(&SHIELD[k][0]) != pin)
+    while (k < sizeof SHIELD / sizeof SHIELD[0] - 1 && pgm_read_byte(&SHIELD[k][0]) != pin)
         k++;
     for (uint8_t way = 0; way < 2; way++)
         uno_motor.ways[way].line = (uno_line){&uno_motor.outputs, pgm_read_byte(&SHIELD[k][1 + way])};
