@@ -177,3 +177,10 @@ def test_a_port_closed_at_1200_baud_asks_for_the_drive():
         board.close_port()
         board.run(0.002)
         assert board.halted == "the ROM's drive RPI-RP2 appears" and board.duty == 0
+
+
+@pytest.mark.wide
+def test_firmware_of_another_version_names_the_board_to_flash(monkeypatch):
+    monkeypatch.setattr("hapticlab.device.board.greeting.table_hash", lambda: 1)
+    with pytest.raises(LinkError, match="hapticlab flash --board pico"), emulated_pico():
+        pass

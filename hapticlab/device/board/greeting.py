@@ -3,6 +3,7 @@
 import math
 
 from ... import __version__
+from ...compiler.boards.board_records import BOARDS, Drive
 from ...errors import LinkError
 from ..link.messages import RESET_CAUSES, STATES, row_of, table_hash
 from .run import fault_words
@@ -26,13 +27,15 @@ def say_hello(exchange, url, seconds):
             f"{url}: no paddle answers within {seconds:g} s. Either the board has no hapticlab firmware (`hapticlab flash` "
             "installs it) or this is a different device. `hapticlab ports` lists the devices that are plugged in."
         ) from None
+    name = said["board"].rstrip(b"\0").decode("ascii", "replace")
     if said["table"] != table_hash():
+        which = f" --board {name}" if isinstance(BOARDS[name].flashing if name in BOARDS else None, Drive) else ""
         raise LinkError(
             f"{url}: the board's firmware {said['major']}.{said['minor']} uses a different version of the messages from "
-            f"hapticlab {__version__}. Flash the firmware that comes with it: hapticlab flash",
+            f"hapticlab {__version__}. Flash the firmware that comes with it: hapticlab flash{which}",
             "VERSION",
         )
-    return said | {"board": said["board"].rstrip(b"\0").decode("ascii", "replace")}
+    return said | {"board": name}
 
 
 def what_happened(exchange, url, reset_cause):
