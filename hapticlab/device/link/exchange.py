@@ -172,7 +172,7 @@ class Exchange:
 
     def _send(self, frame, keeps_alive=True):
         self.check()
-        self._last_sent = self.now()
+        self._last_sent = self.now() if keeps_alive else self._last_sent
         begun = self.presence.now()
         try:
             with port_watched(self.port):

@@ -123,3 +123,22 @@ def test_a_slow_upload_does_not_let_the_running_scene_fall_silent():
         upload(paddle.exchange, "PROGRAM", encode(spring(), word_bits=16))
         assert paddle.exchange.now() - begun > 0.3 and lost > 10
         assert paddle.state()["state"] == STATES["RUN"]
+
+
+def test_questions_that_are_no_word_of_the_host_do_not_put_off_its_heartbeat():
+    lost = 0
+
+    def heard(frame):
+        nonlocal lost
+        lost += frame is not None and frame.message == "PONG"
+        return frame is None or frame.message != "PONG" or lost % 2 == 0
+
+    port = lossy_port(heard=heard)
+    with SerialPaddle("sim://hapkit", port=port) as paddle:
+        paddle.home(at=port.handle.x)
+        paddle.start(hl.Scene(force=hl.parameters("k", units="N/m") * hl.x(hl.n), name="spring")(k=10.0))
+        begun = paddle.exchange.now()
+        for token in range(30):
+            paddle.exchange.ask("PING", token, patience=0.01)
+        assert paddle.exchange.now() - begun > 0.2
+        assert paddle.state()["state"] == STATES["RUN"]
