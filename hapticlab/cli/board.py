@@ -11,7 +11,7 @@ from pathlib import Path
 from .. import __version__
 from ..compiler.boards.board_records import BOARDS
 from ..course.drawings.wiring_files import wiring_svg
-from ..device.bring_up.about import settings_of
+from ..device.bring_up.about import restorable, settings_of
 from ..device.bring_up.bench import bench as first_power_up
 from ..device.bring_up.practised import PractisingOwner
 from ..device.link.serial_ports import available_ports
@@ -116,6 +116,7 @@ def bench(parser, options):
     if options.restore:
         kept = settings_of(options.restore)
         with connect(options.port) as paddle:
+            kept = restorable(kept, paddle.settings)
             return int(not offer(paddle, person, kept, [str(kept)]))
     _agree(options, person, "The motor will pull the handle by 0.4 N, and by up to 2 N in a last step that asks again.")
     with connect(options.port) as paddle:

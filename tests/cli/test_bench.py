@@ -6,8 +6,11 @@ from pathlib import Path
 import pytest
 
 from hapticlab.cli.main import main
+from hapticlab.device.board.settings import changed, nominal
 from hapticlab.device.bring_up import bench as walk
+from hapticlab.device.bring_up.about import restorable
 from hapticlab.device.bring_up.practised import PractisingOwner
+from hapticlab.errors import PaddleError
 
 
 @pytest.fixture
@@ -48,6 +51,20 @@ def test_settings_of_a_report_are_stored_again(short, tmp_path, monkeypatch, cap
         (tmp_path / "mine.json").write_text(json.dumps(spoilt), "utf-8")
         assert main(restore) == 1
     assert "another layout" in (said := capsys.readouterr().err) and "holds no settings" in said
+
+
+def test_a_report_confirms_neither_a_wiring_nor_a_sign():
+    """It did: a person who took the wiring back, or swapped the motor's wires since, had the confirmation of before again."""
+    kept = nominal("hapkit", ident=7, wired=1, checked=1)
+    assert restorable(kept, kept) == kept
+    unconfirmed, swapped = changed(kept, wired=0, checked=0), changed(kept, motor_sign=-kept.motor_sign)
+    other = changed(kept, carrier=31_372)
+    for now, wired in ((None, 0), (unconfirmed, 0), (changed(kept, checked=0), 1), (swapped, 1), (other, 0)):
+        assert restorable(kept, now) == changed(kept, wired=wired, checked=0)
+    reversed_ = changed(swapped, metres_per_count=-kept.metres_per_count)  # x and the force have turned together
+    assert restorable(kept, reversed_) == kept
+    with pytest.raises(PaddleError, match=r"of paddle 0007, and this is 0008.*hapticlab calibrate"):
+        restorable(kept, changed(kept, ident=8))
 
 
 def test_a_doctor_writes_what_it_found_without_the_users_folder(tmp_path, monkeypatch, capsys):

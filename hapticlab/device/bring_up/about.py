@@ -11,8 +11,9 @@ from ... import __version__
 from ...compiler.boards.board_records import BOARDS
 from ...compiler.engines.firmware_library import firmware_folder
 from ...errors import PaddleError
-from ..board.settings import Settings
+from ..board.settings import Settings, changed
 from ..link.messages import RESET_CAUSES, row_of, table_hash
+from ..wiring import Wiring
 
 
 def is_simulated(paddle):
@@ -65,6 +66,33 @@ def settings_of(path):
     if kept is None:
         raise PaddleError(f"{path}: its settings are of firmware with another layout. Calibrate the paddle again.")
     return kept
+
+
+def restorable(kept, now):
+    """Return settings of a report as the connected board may store them: a person confirms a wiring and a sign, no file does.
+
+    Parameters
+    ----------
+    kept : Settings
+        Of a report.
+    now : Settings or None
+        What the board stores now.
+
+    Raises
+    ------
+    PaddleError
+        If they are of another paddle.
+    """
+    if now is None:
+        return changed(kept, wired=0, checked=0)
+    if kept.ident != now.ident:
+        raise PaddleError(
+            f"the report is of paddle {kept.ident:04X}, and this is {now.ident:04X}: what was measured on one is wrong on "
+            "another. Give a report of this paddle, or run `hapticlab calibrate`."
+        )
+    wired = now.wired and kept.wired and Wiring.of(kept) == Wiring.of(now)
+    alike = len({one.motor_sign * one.metres_per_count > 0 for one in (kept, now)}) == 1  # the same force pushes the same way
+    return changed(kept, wired=int(wired), checked=int(wired and kept.checked and now.checked and alike))
 
 
 def _image(flashing):
