@@ -61,8 +61,8 @@ def check_period(board, T, settings=None):
             high = math.floor(unseen * 1e6) * 1e-6
             why = f", because at speed_max = {settings.speed_max:g} m/s its magnet must not make half a turn between two samples"
         # it trusts no reading in flight, and decides with the next one: two of one flight would be taken for a motion
-        if T < settings.sensor_flight:
-            low = max(low, math.ceil(settings.sensor_flight * 1e6 - 1e-6) * 1e-6)
+        if T < settings.sensor_flight * (1 - 1e-6):  # kept as a float32
+            low = max(low, math.ceil(settings.sensor_flight * 1e6 - 1e-3) * 1e-6)
             why = f", because its sensor takes {settings.sensor_flight:g} s from its last count back to its first"
     if not low * (1 - 1e-9) <= T <= high * (1 + 1e-9):
         nearer = low if T < low else high
