@@ -41,7 +41,7 @@ def test_a_flight_of_the_sensor_stops_nothing(flight):
 
 @pytest.mark.wide
 def test_nor_does_one_of_a_sensor_with_lag_and_noise():
-    goes_on(100e-6, 3, 1.0, sensor_delay=0.5e-3, sensor_noise=2 * COUNT)
+    goes_on(100e-6, 3, 1.0, sensor_delay=0.5e-3, sensor_noise=COUNT)
 
 
 @pytest.mark.slow

@@ -60,8 +60,8 @@ def test_every_drive_is_off_in_time(drive, fault):
         paddle.wait(0.1)
         while abs(board.duty) < 30:
             paddle.wait(0.003)
-        begun = board.cycle
         fault.inject(paddle)
+        begun = board.cycle  # before the ticks stop the link is asked once more
         last = paddle.exchange.now() + fault.within + 0.05
         while paddle.exchange.now() < last:
             paddle.exchange.wait(lambda: paddle.exchange.now() >= last, 0.01)
