@@ -22,6 +22,21 @@ void hl_heat_follow(hl_core *core)
     core->heat_given = core->heat > HL_HEAT_STANDS && core->force_limit > 0.0f ? HL_HEAT_OVER : 0;
 }
 
+/* Follow all that was given until now, for from now on a tick takes another time. Nobody may be in hl_heat_follow. */
+void hl_heat_close(hl_core *core)
+{
+    if (core->heat_given && core->heat_given != HL_HEAT_OVER) {
+        hl_heat_follow(core);
+    }
+    if (core->heat_given == 0) {
+        core->heat_taken = core->heat_sum;
+        core->heat_given = core->heat_ticks;
+        core->heat_sum = 0;
+        core->heat_ticks = 0;
+        hl_heat_follow(core);
+    }
+}
+
 /* Take settings into use; `curve`: parts of full duty for no force and for each quarter of the full one; `stood`: the
  * force_continuous before. Opening the port resets many boards, which then do not know how hot the motor is: take half. */
 void hl_motor_configure(hl_core *core, const float curve[4], float stood)

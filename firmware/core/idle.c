@@ -12,7 +12,7 @@ static void await_standalone(hl_core *core)
         core->rested = 0;
         return;
     }
-    if (++core->rested > core->ticks_per_second) {
+    if (++core->rested > core->ticks_per_second && core->heat_given == 0) {
         core->rested = 0;
         hl_place_start(core, core->active, 1, 0, core->settings.force_max);
     }
@@ -21,7 +21,7 @@ static void await_standalone(hl_core *core)
 /* A tick in which nothing runs: the handle is watched, the motor cools. */
 void hl_idle(hl_core *core)
 {
-    if (core->period_us != HL_IDLE_PERIOD_US) {
+    if (core->period_us != HL_IDLE_PERIOD_US && core->heat_given == 0) {
         hl_place_idle(core); /* after a fault */
     }
     if (core->track.doubted == 0) {

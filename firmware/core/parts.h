@@ -66,6 +66,7 @@ void hl_heat(hl_core *core, uint16_t part);
 #define HL_HEAT_OVER 255
 void hl_motor_configure(hl_core *core, const float curve[4], float stood);
 void hl_heat_follow(hl_core *core);
+void hl_heat_close(hl_core *core);
 
 /* message.c: do what the message at `frame` asks, `count` bytes of payload and guard; write the reply's payload and its
  * number, and return how long it is */

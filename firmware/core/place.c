@@ -84,9 +84,12 @@ static uint8_t why_not(const hl_core *core, const hl_place *place, uint16_t ever
     return core->heat > HL_HEAT_STANDS ? HL_RESULT_HOT : !core->homed ? HL_RESULT_NOT_HOMED : HL_OK;
 }
 
-/* Take a period into use: everything that is counted in ticks. */
-static void set_period(hl_core *core, uint16_t us)
+/* Take a period into use: everything that is counted in ticks. In a tick, only while no heat waits for the main loop. */
+HL_CALLED static void set_period(hl_core *core, uint16_t us)
 {
+    if (us != core->period_us) {
+        hl_heat_close(core);
+    }
     core->period_us = us;
     core->period_clocks = (uint16_t)((uint32_t)us * (HL_CLOCK_HZ / 1000000u));
     core->rate = 1e6f / (float)us;
