@@ -97,8 +97,11 @@ void hl_heat(hl_core *core, uint16_t part)
         hl_core_fault(core, HL_FAULT_OVER_HEAT, (float)core->heat / (float)HL_HEAT_STANDS);
     }
     if (core->heat_ticks == UINT8_MAX) { /* in RUN only where steps leave no time for anything else */
-        hl_core_fault(core, HL_FAULT_OVERRUN, (float)core->timing.step_last / (float)core->period_clocks);
-        return;
+        if (core->heat_given) {
+            hl_core_fault(core, HL_FAULT_OVERRUN, (float)core->timing.step_last / (float)core->period_clocks);
+            return;
+        }
+        core->heat_ticks--; /* the main loop is back, from writing its store: what it missed cooled nothing */
     }
     core->heat_sum += part ? ((uint32_t)part * part >> 8) + (part >> 8) + 2 : 0;
     if (++core->heat_ticks >= HEAT_TICKS && core->heat_given == 0) {
