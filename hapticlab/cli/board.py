@@ -6,6 +6,7 @@ import sys
 import tempfile
 from contextlib import nullcontext, redirect_stdout
 from functools import partial
+from itertools import chain, count
 from pathlib import Path
 
 from .. import __version__
@@ -19,7 +20,8 @@ from ..device.setup.before_flash import before_flash
 from ..device.setup.calibrate import calibrate as calibrate_paddle
 from ..device.setup.connect import connect
 from ..device.setup.doctor import doctor as walk
-from ..device.setup.drive.copy_firmware import COPIED, copy_firmware
+from ..device.setup.drive.copy_firmware import COPIED, copy_firmware, waiting_boards
+from ..device.setup.flash import FLASHED
 from ..device.setup.flash import flash as write_firmware
 from ..device.setup.person import Person, agrees
 from ..device.setup.practice import practice_board
@@ -37,9 +39,10 @@ class PersonWithPictures(Person):
 
     def picture(self, build):
         """Write the drawing of a wiring, and return where it is."""
-        path = Path(tempfile.gettempdir()) / f"hapticlab-wiring-{build.name}.svg"
-        path.write_text(wiring_svg(build), "utf-8")
-        return str(path)
+        name = {"prefix": f"hapticlab-wiring-{build.name}-", "suffix": ".svg"}  # its own, where people share a folder
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", delete=False, **name) as file:
+            file.write(wiring_svg(build))
+        return file.name
 
 
 def ports(parser, options):
@@ -80,14 +83,17 @@ def _for_a_stranger(report):
 
 def flash(parser, options):
     """Write the firmware into a board."""
-    tell = partial(print, file=sys.stderr)
-    if options.board in COPIED:
-        before_flash(options.port or _port_of(options.board), options.board, _who(options), tell=tell)
-        print(copy_firmware(options.image, options.board, tell=tell))
+    tell, board = partial(print, file=sys.stderr), options.board or _likely_board(options.port)
+    if board not in FLASHED | COPIED:
+        raise PaddleError(f"board = {board!r}; this package has firmware for {', '.join(FLASHED | COPIED)}. Give one of them")
+    if board in COPIED:
+        port = options.port or _port_of(board)
+        before_flash(port, board, _who(options), tell=tell)
+        print(copy_firmware(options.image, board, port, tell=tell))
         return 0
     port = options.port or _only_port()
-    before_flash(port, options.board, _who(options), tell=tell)
-    print(write_firmware(port, options.image, options.board, tell=tell))
+    before_flash(port, board, _who(options), tell=tell)
+    print(write_firmware(port, options.image, board, tell=tell))
     return 0
 
 
@@ -112,7 +118,7 @@ def calibrate(parser, options):
 
 def bench(parser, options):
     """Walk an owner through the first power-up and write one report; 0 only if it is whole and all came as predicted."""
-    person, simulated = Person(), _is_simulated(options.port)
+    person, simulated = PersonWithPictures(), _is_simulated(options.port)
     if options.restore:
         kept = settings_of(options.restore)
         with connect(options.port) as paddle:
@@ -122,7 +128,7 @@ def bench(parser, options):
     with connect(options.port) as paddle:
         _tell_notices(paddle)
         report = first_power_up(paddle, PractisingOwner(paddle) if simulated else person, tell=print)
-        page, data = report.save(options.out)
+        page, data = report.save(_unused(options.out))
     print(f"{report.sentence}\nThe report is in {page}, and as data in {data}")
     return INTERRUPTED if report.ended.startswith("interrupted") else int(not report.is_whole)
 
@@ -186,10 +192,29 @@ def _agree(options, person, what):
         raise PaddleError("nothing was done")
 
 
+def _unused(path):
+    """Return a path without a report, with a number if need be: an earlier report is evidence, and has settings to restore."""
+    stem = Path(path).with_suffix("")
+    names = chain([stem], (stem.with_name(f"{stem.name}-{k}") for k in count(2)))
+    return next(name for name in names if not any(name.with_suffix(end).exists() for end in (".md", ".json")))
+
+
+def _likely_board(port):
+    """The board that is meant where nobody said: by the USB numbers of its port, or by its drive; else an Uno."""
+    found = [one for one in available_ports() if (one.device == port if port else one.known)]
+    copied = [name for name in COPIED for one in found if (one.vid, one.pid) in _usb_numbers(name)]
+    if not copied and not found and not port:
+        copied = [name for name in COPIED if waiting_boards(name)]
+    return copied[0] if copied and len(copied) >= len(found) else "uno"
+
+
+def _usb_numbers(board):
+    return {(usb.vendor, usb.product) for usb in BOARDS[board].usb}
+
+
 def _port_of(board):
     """The only port with the USB numbers of a board, or None."""
-    numbers = {(usb.vendor, usb.product) for usb in BOARDS[board].usb}
-    found = [port.device for port in available_ports() if (port.vid, port.pid) in numbers]
+    found = [port.device for port in available_ports() if (port.vid, port.pid) in _usb_numbers(board)]
     return found[0] if len(found) == 1 else None
 
 

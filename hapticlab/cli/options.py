@@ -174,7 +174,7 @@ def _add_board_commands(commands, shared):
     made["doctor"].add_argument("--self-test", **command, help=words)
     words = "where the self-test writes what it found (default: %(default)s)"
     made["doctor"].add_argument("--out", metavar="FILE", default="hapticlab-self-test.json", help=words)
-    made["flash"].add_argument("--board", metavar="NAME", default="uno", help="which board it is (default: %(default)s)")
+    made["flash"].add_argument("--board", metavar="NAME", help="uno or pico; by default as USB says, and uno where it does not")
     made["flash"].add_argument("--image", metavar="FILE", help="by default the one that came with hapticlab")
     made["flash"].add_argument("--yes", action="store_true", help="do not ask which paddle is built")
     words = "rehearse it on a simulated board with one thing wrong: " + ", ".join(TROUBLES)
@@ -183,7 +183,7 @@ def _add_board_commands(commands, shared):
     made["calibrate"].add_argument("--only", choices=STEPS, help="this step alone")
     for name in ("calibrate", "bench"):
         made[name].add_argument("--yes", action="store_true", help="do not ask before the motor moves")
-    words = "write FILE.md, to read, and FILE.json, as data (default: %(default)s)"
+    words = "write FILE.md, to read, and FILE.json, as data; a report that is there stays (default: %(default)s)"
     made["bench"].add_argument("--out", metavar="FILE", default="hapticlab-bench", help=words)
     words = "try nothing, but store the settings that this report has, if you agree"
     made["bench"].add_argument("--restore", metavar="FILE.json", help=words)

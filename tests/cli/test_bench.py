@@ -29,6 +29,15 @@ def test_it_writes_one_report_to_read_and_as_data(short, tmp_path, capsys):
     assert said.index("== switch") < said.index("== host silent")
 
 
+def test_an_earlier_report_stays(short, tmp_path, capsys):
+    for _ in range(3):
+        main(["bench", "--port", "sim://hapkit", "--out", str(tmp_path / "mine")])
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(
+        f"mine{number}.{kind}" for number in ("", "-2", "-3") for kind in ("md", "json")
+    )
+    assert "mine-3.md" in capsys.readouterr().out
+
+
 def test_a_walk_that_ends_early_is_a_partial_report_and_no_success(short, tmp_path, monkeypatch):
     def interrupt(person, question, ask=PractisingOwner.ask):
         if "Switch the supply off" in question:

@@ -557,13 +557,39 @@ def test_flash_takes_the_only_board_or_the_one_named(monkeypatch, capsys):
     monkeypatch.setattr(board_command, "before_flash", lambda *given, tell: asked.append(given))
     monkeypatch.setattr(board_command, "write_firmware", writes)
     assert main.main(["flash"]) == 0
-    assert main.main(["flash", "--board", "mill", "--port", "COM9", "--image", "own.hex"]) == 0
-    assert written == [("COM3", None, "uno"), ("COM9", "own.hex", "mill")]
-    assert asked == [("COM3", "uno", None), ("COM9", "mill", None)]  # nobody is at this terminal
+    assert main.main(["flash", "--board", "uno", "--port", "COM9", "--image", "own.hex"]) == 0
+    assert written == [("COM3", None, "uno"), ("COM9", "own.hex", "uno")]
+    assert asked == [("COM3", "uno", None), ("COM9", "uno", None)]  # nobody is at this terminal
     assert capsys.readouterr() == ("written\nwritten\n", "COM3\nCOM9\n")
     found.append(Port("COM4", known="Arduino Uno R3"))
     assert main.main(["flash"]) == 1
     assert "known boards: COM3, COM4; say which" in capsys.readouterr().err
+    assert main.main(["flash", "--board", "mill"]) == 1
+    assert "board = 'mill'; this package has firmware for uno, pico." in capsys.readouterr().err
+
+
+PICO_PORT = Port("COM7", known="Raspberry Pi Pico", vid=0x2E8A, pid=0x000A)
+
+
+@pytest.mark.parametrize(
+    ("found", "given", "drives", "board", "port"),
+    [
+        ([PICO_PORT], [], [], "pico", "COM7"),
+        ([PICO_PORT, Port("COM8", known="Raspberry Pi Pico", vid=0x2E8A, pid=0x000A)], ["--port", "COM7"], [], "pico", "COM7"),
+        ([PICO_PORT, Port("COM3", known="Arduino Uno R3")], ["--port", "COM3"], [], "uno", "COM3"),
+        ([], [], ["/media/RPI-RP2"], "pico", None),  # a new one, with its button held
+        ([Port("COM3", known="Arduino Uno R3")], [], ["/media/RPI-RP2"], "uno", "COM3"),
+    ],
+)
+def test_flash_knows_a_pico_by_its_port_or_its_drive(monkeypatch, found, given, drives, board, port):
+    written = []
+    monkeypatch.setattr(board_command, "available_ports", lambda: found)
+    monkeypatch.setattr(board_command, "waiting_boards", lambda name: drives)
+    monkeypatch.setattr(board_command, "before_flash", lambda *given, tell: None)
+    monkeypatch.setattr(board_command, "write_firmware", lambda port, image, board, tell: written.append((board, port)))
+    monkeypatch.setattr(board_command, "copy_firmware", lambda image, board, port, tell: written.append((board, port)))
+    assert main.main(["flash", *given]) == 0
+    assert written == [(board, port)]
 
 
 def test_calibrate_is_rehearsed_without_a_board(capsys):

@@ -210,7 +210,7 @@ def _between(xs, ys, x):
 _USUAL = {"travel_min": -0.05, "travel_max": 0.05, "heating_time": 60.0, "speed_max": 2.0}
 #: and for each its wiring, which is that of its build in wirings.py. Hapkits: the square-root law is of the published
 #: sketches, and the KMA210 has nominally 920 counts per half turn
-_NOMINAL = {
+NOMINAL = {
     "hapkit": {
         "force_continuous": 2.0, "motor_law": MOTOR_LAWS["SQRT"], "sensor": SENSORS["MAGNETORESISTIVE"], "wrap": 920,
         "motor_pins": pin_word(5, 8),
@@ -260,11 +260,11 @@ def nominal(profile, **changes):
     **changes
         Fields that are known better.
     """
-    if profile not in _NOMINAL:
-        raise PaddleError(f"no nominal settings for {profile!r}; they exist for {', '.join(_NOMINAL)}.")
+    if profile not in NOMINAL:
+        raise PaddleError(f"no nominal settings for {profile!r}; they exist for {', '.join(NOMINAL)}.")
     kind = named_profile(profile)
     known = {"metres_per_count": 1 / kind.counts_per_metre, **{name: getattr(kind, name) for name in _OF_PROFILE}}
-    values = {**known, **_USUAL, **_NOMINAL[profile], **changes}
+    values = {**known, **_USUAL, **NOMINAL[profile], **changes}
     usual = {SENSORS[name]: pins for name, pins in _SENSOR_PINS.items()}.get(values["sensor"], NO_PINS)
     return Settings(**{"sensor_pins": usual, **values})
 

@@ -14,6 +14,8 @@ from .stop_times import ACT, stopped
 
 #: part of the span beyond the travel that a stop may give: firmware/core/handle.c
 GIVES = 1 / 20
+#: counts per period that a limit on speed needs, to be seen, and the longest period for that [s]
+SEEN, T_MOST = 3, 10e-3
 
 
 def limits(bench):
@@ -48,12 +50,26 @@ def _store_held(paddle, settings):
     paddle.home(at=before["x"] + moved * settings.metres_per_count)
 
 
+@contextmanager
+def _speeds_seen(bench):
+    """Lengthen the period where a coarse encoder shows no such low speed as a limit, and yield the paddle."""
+    paddle, kept = bench.paddle, bench.paddle.T
+    slow = math.ceil(1e4 * SEEN * bench.metres_per_count / TRIED_SPEED) * 1e-4
+    paddle.T = min(max(kept, slow), max(kept, T_MOST))
+    try:
+        yield paddle
+    finally:
+        paddle.T = kept
+
+
 def _over_speed(bench):
     bench.hold(f"Press Enter, and then flick it to one side within {ACT:g} s.")
-    with bench.pulled() as paddle:
-        fault, run = bench.fault(ACT), bench.ended
-    yield from stopped(bench, "over-speed", fault, "OVER_SPEED", run.last_tick, 0, (run.every + 2) * paddle.T)
-    limit, step = paddle.settings.speed_max, bench.metres_per_count / paddle.T
+    with _speeds_seen(bench) as paddle:
+        with bench.pulled():
+            fault, run = bench.fault(ACT), bench.ended
+        yield from stopped(bench, "over-speed", fault, "OVER_SPEED", run.last_tick, 0, (run.every + 2) * paddle.T)
+        step = bench.metres_per_count / paddle.T
+    limit = paddle.settings.speed_max
     fastest = float(np.max(np.abs(bench.log.v), initial=0.0)) if fault else math.inf
     # a reading of an angle sensor that is too fast is doubted once: the step after it may be two periods of motion
     most = limit if paddle.settings.sensor == SENSORS["QUADRATURE"] else 2.25 * limit + 8 * step

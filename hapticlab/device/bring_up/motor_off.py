@@ -28,15 +28,23 @@ MISS = 1 / 32
 def calibration(bench):
     """Calibrate what needs no force, on a board that is new or whose wiring nobody confirmed."""
     paddle, person = bench.paddle, bench.person
-    ready = paddle.settings is not None and paddle.settings.wired
-    if not ready and agrees(person, "This paddle is not calibrated. Do it now, with the supply of the motor off?"):
-        for step in STEPS[: STEPS.index("sign")]:
-            calibrate(paddle, person, only=step)
+    if not all(_confirmed_and_measured(paddle)):
+        if agrees(person, "This paddle is not calibrated. Do it now, with the supply of the motor off?"):
+            for step in STEPS[: STEPS.index("sign")]:
+                calibrate(paddle, person, only=step)
+                if not _confirmed_and_measured(paddle)[0]:
+                    break  # whoever does not confirm the wiring is not asked for it by every step
     kept = paddle.settings
-    wired, measured = bool(kept and kept.wired), bool(kept and kept.date)
+    wired, good = _confirmed_and_measured(paddle)
+    measured = bool(kept and kept.date)
     yield Finding.seen("calibration", "wiring confirmed", wired, "yes" if wired else "no", "a person compared the wires")
-    good = measured or is_simulated(paddle)  # a simulated board is what its settings say
     yield Finding.seen("calibration", "stops measured", good, str(kept.date) if measured else "nominal", "a person measured them")
+
+
+def _confirmed_and_measured(paddle):
+    """Return whether a person has confirmed the wiring, and measured the stops: a simulated board is what its settings say."""
+    kept = paddle.settings
+    return bool(kept and kept.wired), bool(kept and (kept.date or is_simulated(paddle)))
 
 
 def link(bench):

@@ -7,7 +7,7 @@ from datetime import date as calendar
 from typing import TYPE_CHECKING
 
 from ...errors import PaddleError
-from ..board.settings import changed, nominal
+from ..board.settings import NOMINAL, changed, nominal
 from .built import require_wiring
 from .force_constant import measure_force
 from .person import Person
@@ -77,9 +77,9 @@ def calibrate(
 
 def still_nominal(settings):
     """Return a line on the constants that are as shipped: measured on no paddle."""
-    shipped = nominal("hapkit").to_float32()
+    shipped = [nominal(kind).to_float32() for kind in NOMINAL]
     names = [name for name in ("metres_per_count", "force_full", "force_continuous", "heating_time", "speed_max", "m", "b")
-             if getattr(settings, name) == getattr(shipped, name)]  # fmt: skip
+             if getattr(settings, name) in {getattr(one, name) for one in shipped}]  # fmt: skip
     return [f"nominal    {', '.join(names)}: as shipped, not measured on this paddle"] if names else []
 
 

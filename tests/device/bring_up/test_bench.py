@@ -177,6 +177,24 @@ class TestPartial:
         assert report.ended.startswith("interrupted in the step 'over-speed'") and "still stores" not in report.ended
         assert paddle.settings == kept
 
+    def test_an_encoder_of_few_counts_shows_the_lowered_speed_limit(self, monkeypatch):
+        """A Longhorn's count is 0.74 mm, so that two counts in 1 ms are faster than a hand."""
+        only(monkeypatch, "over-speed")
+        with hl.connect("sim://longhorn") as coarse:
+            report = bench(coarse, PractisingOwner(coarse))
+            assert coarse.T == 1e-3
+        assert verdicts(report) == {} and report["over-speed", "fastest sample before it"].found > 0.1
+
+    def test_a_wiring_that_nobody_confirms_is_asked_for_once(self, monkeypatch):
+        only(monkeypatch, "calibration")
+        asked = []
+        port = open_port("sim://hapkit")
+        port.put_on(None, store=b"")
+        with SerialPaddle("sim://hapkit", port=port) as new:
+            no = {"Store_these_settings": lambda: asked.append("store") or "no", "This_paddle_is_not": lambda: "yes"}
+            report = bench(new, Acts(new, **no))
+        assert asked == ["store"] and verdicts(report)["calibration", "wiring confirmed"] == "differs"
+
     def test_a_link_that_fails_while_limits_are_lowered_is_told(self, paddle, monkeypatch, tmp_path):
         only(monkeypatch, "over-speed")
         kept = paddle.settings

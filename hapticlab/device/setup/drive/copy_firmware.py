@@ -39,7 +39,7 @@ class Copied:
         return f"{self.image}: {self.size} bytes copied; the board started the firmware and is at {self.port}"
 
 
-def copy_firmware(image=None, board="pico", *, progress=True, tell=lambda sentence: None):
+def copy_firmware(image=None, board="pico", port=None, *, progress=True, tell=lambda sentence: None):
     """Copy a firmware image to a board's drive, and wait until the board comes back with a serial port.
 
     Parameters
@@ -48,6 +48,8 @@ def copy_firmware(image=None, board="pico", *, progress=True, tell=lambda senten
         The one that comes with the package if None.
     board : str
         One of :data:`COPIED`.
+    port : str, optional
+        Of the board that is to be asked for its drive; by default the only board of this kind.
     progress : bool
         Show a bar if it lasts longer than two seconds.
     tell : callable
@@ -71,7 +73,7 @@ def copy_firmware(image=None, board="pico", *, progress=True, tell=lambda senten
     except OSError as problem:
         raise PaddleError(f"{path} does not open ({problem.strerror}); give the path of a .uf2 file") from None
     parse_uf2(content, path.name, how.family)
-    drive = _wait_for_drive(board, how, tell)
+    drive = _wait_for_drive(board, how, port, tell)
     before = {port.device for port in available_ports()}
     tell(f"Copying {path.name} to {drive}. The motor stays off. Do not unplug the cable.")
     trouble = _copy(content, drive / path.name, progress)
@@ -104,9 +106,17 @@ def _by_hand(how):
     )
 
 
-def _wait_for_drive(board, how, tell):
+def waiting_boards(board):
+    """Return the drives of boards of this kind that wait for firmware; none where a drive is of another chip."""
+    try:
+        return _drives(COPIED[board])
+    except PaddleError:
+        return []
+
+
+def _wait_for_drive(board, how, port, tell):
     """Return the drive of the one board that waits for firmware; ask for it where there is none."""
-    found = _drives(how) or _asked(board, how, tell)
+    found = _drives(how) or _asked(board, how, port, tell)
     if not found:
         tell(f"No drive {how.name} is there. Switch off the supply of the motor. {_by_hand(how)}.")
         found = _within(PERSON_WAIT, lambda: _drives(how))
@@ -119,10 +129,10 @@ def _wait_for_drive(board, how, tell):
     return found[0]
 
 
-def _asked(board, how, tell):
+def _asked(board, how, port, tell):
     """Ask a board that runs this firmware for its drive, by closing its port at 1200 baud; it obeys with its motor off only."""
     numbers = _numbers(board)
-    ports = [port.device for port in available_ports() if (port.vid, port.pid) in numbers]
+    ports = [one.device for one in available_ports() if (one.vid, one.pid) in numbers and port in (None, one.device)]
     if len(ports) != 1:
         return None
     tell(f"Asking {how.called} at {ports[0]} to show its drive.")

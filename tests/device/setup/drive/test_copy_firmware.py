@@ -122,6 +122,20 @@ def test_a_board_that_runs_this_firmware_is_asked_for_its_drive(bench, image, mo
     assert asked == [("/dev/ttyACM7", 1200)] and "Asking a Raspberry Pi Pico at /dev/ttyACM7" in bench.told[0]
 
 
+def test_of_several_boards_the_named_one_is_asked(bench, image, monkeypatch):
+    bench.ports += [Port("/dev/ttyACM5", vid=0x2E8A, pid=0x000A), BOARD_PORT]
+    asked = []
+
+    class Opened:
+        def close(self):
+            bench.ports.remove(BOARD_PORT)
+            bench.plug_in()
+
+    monkeypatch.setattr(module, "open_port", lambda url, baudrate: asked.append(url) or Opened())
+    assert copy_firmware(image, port="/dev/ttyACM7", tell=bench.told.append).port == "/dev/ttyACM7"
+    assert asked == ["/dev/ttyACM7"]
+
+
 def test_a_port_that_is_taken_leaves_it_to_the_person(bench, image, monkeypatch):
     bench.ports.append(BOARD_PORT)
     bench.at_the_button = lambda: (bench.ports.clear(), bench.plug_in())
