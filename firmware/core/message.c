@@ -11,9 +11,6 @@ enum { CRC_BYTES = 4 }; /* at the end of programs and settings */
 
 static const uint8_t board_name[] HL_FLASH = HL_BOARD_NAME;
 
-#define FIRMWARE_MAJOR 1
-#define FIRMWARE_MINOR 0
-
 /* Whatever runs or was loaded belongs to an earlier session. */
 static void begin_session(hl_core *core, uint32_t session)
 {
@@ -38,8 +35,8 @@ static uint8_t welcome(hl_core *core, const uint8_t *payload, uint8_t *to)
     if (core->calibrated) {
         board_store_read(core, (uint16_t)(core->record_at + offsetof(hl_record, ident)), to + HL_AT_WELCOME_IDENT, 2);
     }
-    to[HL_AT_WELCOME_MAJOR] = FIRMWARE_MAJOR;
-    to[HL_AT_WELCOME_MINOR] = FIRMWARE_MINOR;
+    to[HL_AT_WELCOME_MAJOR] = HL_FIRMWARE_MAJOR;
+    to[HL_AT_WELCOME_MINOR] = HL_FIRMWARE_MINOR;
     to[HL_AT_WELCOME_WORD_BYTES] = HL_WORD_BYTES;
     hl_put16(to + HL_AT_WELCOME_ARENA, HL_ARENA_BYTES);
     to[HL_AT_WELCOME_SLOTS] = HL_SLOTS;

@@ -6,6 +6,8 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
+#define HL_FIRMWARE_MAJOR 2
+#define HL_FIRMWARE_MINOR 0
 #define HL_PROTOCOL_HASH 0x6490439fUL
 #define HL_SETTINGS_HASH 0xb154e035UL
 #define HL_LARGEST_PAYLOAD 48

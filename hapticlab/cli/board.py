@@ -220,7 +220,11 @@ def _port_of(board):
 
 def _only_port():
     known = [port.device for port in available_ports() if port.known]
-    if len(known) != 1:
-        named = ", ".join(known) or "none"
-        raise PaddleError(f"known boards: {named}; say which port to write to: hapticlab flash --port PORT")
+    if not known:
+        raise PaddleError(
+            "no known board is plugged in. Use a USB cable that carries data, or name the port: hapticlab flash --port PORT. For "
+            "a new Pico: hapticlab flash --board pico"
+        )
+    if len(known) > 1:
+        raise PaddleError(f"known boards: {', '.join(known)}; say which port to write to: hapticlab flash --port PORT")
     return known[0]

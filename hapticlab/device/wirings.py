@@ -168,6 +168,10 @@ _LONGHORN = "sketches of the Longhorn Hapkit (A. Majewicz Fey, UT Austin, 2021):
 _SHIELD = "Adafruit AFMotor library and motor shield version 1: 74HC595 with latch D12, clock D4, data D8, output enable D7"
 _ENCODER_LEVELS = "A Pico takes at most 3.3 V on its pins: use an encoder that works with 3.3 V, or a level shifter."
 _L298 = "Pull the module's jumper from ENA. Leave its own 5V terminal empty; its jumper 5V-EN stays in, for 7 to 12 V."
+_MEASURE = (
+    "Measure from D5 to GND without any supply. If it is more than 11 kOhm, add 10 kOhm, so that the motor is off while the "
+    "board starts."
+)
 _LOW_CARRIER = "The carrier is audible, because the driver is too slow for a higher one."
 
 BUILDS = {
@@ -181,7 +185,7 @@ BUILDS = {
             driver="on the Hapkit board",
             sensor="KMA210 on the Hapkit board",
             source=_SKETCHES,
-            notes=("Only the two wires of the motor and the plug of the supply are connected by hand.",),
+            notes=("Only the two wires of the motor and the plug of the supply are connected by hand.", _MEASURE),
             plugged=("driver", "sensor"),
         ),
         Build(
@@ -192,7 +196,7 @@ BUILDS = {
             driver="on the Hapkit board",
             sensor="AS5048A module",
             source="ME327 (Stanford): chip select on D10, SPI; driver as in the " + _SKETCHES,
-            notes=("CLK, MISO and MOSI of the sensor go to the SPI pins of the board, which no other wire may use.",),
+            notes=("CLK, MISO and MOSI of the sensor go to the SPI pins of the board, which no other wire may use.", _MEASURE),
             plugged=("driver",),
             marked={"SCK": "CLK"},
         ),
@@ -239,7 +243,7 @@ BUILDS = {
             sensor="encoder on the motor",
             source="ST L298 data sheet: 25 kHz typical, 40 kHz at most; driver's pins as in a published Nano sketch of a Hapkit; "
             "encoder illustrative",
-            notes=(_L298, _LOW_CARRIER),
+            notes=(_L298, _LOW_CARRIER, "A Nano's pins have the same names, in other positions."),
             marked={"EN": "ENA", "V+": "12V"},
         ),
         Build(

@@ -18,7 +18,7 @@ HEADERS = {
         "GP0 GP1 GND GP2 GP3 GP4 GP5 GND GP6 GP7 GP8 GP9 GND GP10 GP11 GP12 GP13 GND GP14 GP15".split(),
     ),
 }
-CALLED = {"uno": "Uno or Nano", "pico": "Pico"}
+CALLED = {"uno": "Uno", "pico": "Pico"}
 COLOURS = {"signal": COLD, "ground": GREY, "sensor supply": WARM, "motor": WARM}
 #: left and right edge of board, of driver and sensor; the motor's centre and the supply's left edge
 BOARD, PART, MOTOR = (0.3, 3.7), (7.4, 10.6), 13.1
@@ -56,7 +56,7 @@ class WiringSheet:
         _power(axes, top - 0.7 * ROW, self.build.marked)
         _part(axes, low + ROW * (len(of_sensor) + 0.4), len(of_sensor), of_sensor, f"sensor: {self.build.sensor}")
         if wired:
-            _edge(axes, edge, HEADERS[self.build.board], wires)
+            _edge(axes, edge, self.build.board, wires)
         for row, note in enumerate(notes):
             words(axes, 0.3, edge - 0.4 - 0.55 * row, note, at="left", size=SMALL)
         return figure
@@ -126,14 +126,15 @@ def _terminal(axes, y, name, colour):
     words(axes, PART[1] - 0.15, y, name, at="right")
 
 
-def _edge(axes, low, rows, wires):
+def _edge(axes, low, board, wires):
     """Draw the board from above, USB on the left: the pins with wires of a person's own are filled and named."""
     used = {one.begin[1]: COLOURS[one.carries] for one in wires if one.begin[0] == "board" and not one.fixed}
     box(axes, 0.3, low, 13.8, 2.1)
     box(axes, 0.1, low + 0.65, 0.9, 0.8, colour=GREY)
     words(axes, 1.1, low + 1.05, "USB", at="left", size=SMALL)
-    words(axes, 7.3, low + 1.05, "the board from above: a filled pin takes a wire; all GND are one", size=SMALL)
-    for row, (y, inward) in zip(rows, ((low + 1.88, -1), (low + 0.22, 1)), strict=True):
+    called = f"the {CALLED[board]} from above: a filled pin takes a wire; all GND are one"
+    words(axes, 7.3, low + 1.05, called, size=SMALL)
+    for row, (y, inward) in zip(HEADERS[board], ((low + 1.88, -1), (low + 0.22, 1)), strict=True):
         at = {k: 0.7 + k * 13.0 / (len(row) - 1) for k, name in enumerate(row) if name != "-"}
         axes.plot(list(at.values()), [y] * len(at), "s", color=GREY, markersize=7, fillstyle="none")
         for k, x in at.items():

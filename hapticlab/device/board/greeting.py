@@ -5,7 +5,7 @@ import math
 from ... import __version__
 from ...compiler.boards.board_records import BOARDS, Drive
 from ...errors import LinkError
-from ..link.messages import RESET_CAUSES, STATES, row_of, table_hash
+from ..link.messages import FIRMWARE, RESET_CAUSES, STATES, row_of, table_hash
 from .run import fault_words
 
 #: seconds between two hellos: opening the port has reset many a board, whose bootloader listens first
@@ -32,7 +32,7 @@ def say_hello(exchange, url, seconds):
         which = f" --board {name}" if isinstance(BOARDS[name].flashing if name in BOARDS else None, Drive) else ""
         raise LinkError(
             f"{url}: the board's firmware {said['major']}.{said['minor']} uses a different version of the messages from "
-            f"hapticlab {__version__}. Flash the firmware that comes with it: hapticlab flash{which}",
+            f"firmware {FIRMWARE[0]}.{FIRMWARE[1]}, which comes with hapticlab {__version__}. Flash it: hapticlab flash{which}",
             "VERSION",
         )
     return said | {"board": name}

@@ -28,12 +28,12 @@ MISS = 1 / 32
 def calibration(bench):
     """Calibrate what needs no force, on a board that is new or whose wiring nobody confirmed."""
     paddle, person = bench.paddle, bench.person
-    if not all(_confirmed_and_measured(paddle)):
-        if agrees(person, "This paddle is not calibrated. Do it now, with the supply of the motor off?"):
-            for step in STEPS[: STEPS.index("sign")]:
-                calibrate(paddle, person, only=step)
-                if not _confirmed_and_measured(paddle)[0]:
-                    break  # whoever does not confirm the wiring is not asked for it by every step
+    question = "This paddle is not calibrated. Do it now, with the supply of the motor off?"
+    if not all(_confirmed_and_measured(paddle)) and agrees(person, question):
+        for step in STEPS[: STEPS.index("sign")]:
+            calibrate(paddle, person, only=step)
+            if not _confirmed_and_measured(paddle)[0]:
+                break  # a person who does not confirm the wiring is not asked for it by every step
     kept = paddle.settings
     wired, good = _confirmed_and_measured(paddle)
     measured = bool(kept and kept.date)

@@ -112,7 +112,7 @@ STEPS = {
         Step(
             "sign",
             "If the sign was never checked, hold the handle lightly and move it to one side and to the other for 6 seconds.",
-            "The motor pulls the way it is told, on both sides. More than 0.5 N is allowed only after that.",
+            "The motor pulls in the direction that it is told, on both sides. More than 0.5 N is allowed only after that.",
             "Swap the sign as offered. If it pushes one way only, look at the wire of the direction pin.",
         ),
         Step(

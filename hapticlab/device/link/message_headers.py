@@ -17,6 +17,8 @@ def generate():
     lines = [NOTICE, "#ifndef HL_MESSAGES_H", "#define HL_MESSAGES_H", "", "#include <stdint.h>", ""]
     lines += [
         f"#define HL_PROTOCOL {tables.PROTOCOL}",
+        f"#define HL_FIRMWARE_MAJOR {tables.FIRMWARE[0]}",
+        f"#define HL_FIRMWARE_MINOR {tables.FIRMWARE[1]}",
         f"#define HL_PROTOCOL_HASH 0x{tables.table_hash():08x}UL",
         f"#define HL_SETTINGS_HASH 0x{tables.settings_hash():08x}UL",
         f"#define HL_LARGEST_PAYLOAD {tables.LARGEST_PAYLOAD}",

@@ -29,6 +29,8 @@ from ...compiler.engines.bytecode import RESULTS as MACHINE_RESULTS
 from ...compiler.engines.bytecode import table_hash as machine_hash
 
 PROTOCOL = 1
+#: major and minor: a release with other tables than the last has another one, so that a person can tell the two apart
+FIRMWARE = (2, 0)
 #: of COBS and CRC together, more than any message needs
 LARGEST_PAYLOAD = 48
 

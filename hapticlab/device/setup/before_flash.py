@@ -19,7 +19,7 @@ def before_flash(port, board, person=None, *, tell=print):
 
     A wiring that is not the stored one is taken back: wired = 0 and checked = 0, and a kept scene does not start any more. The
     settings stay where they are while firmware is written, and new firmware keeps the motor off until `calibrate` has
-    confirmed the wiring.
+    confirmed the wiring, unless settings of the same layout say that it is confirmed.
 
     Parameters
     ----------
@@ -41,9 +41,8 @@ def before_flash(port, board, person=None, *, tell=print):
     try:
         paddle = SerialPaddle(port, hello=HELLO)
     except LinkError as problem:
-        other = "firmware of another version, whose settings will not be used"
-        tell(f"The board has {other if problem.result == 'VERSION' else 'no hapticlab firmware yet'}.")
-        tell(f"{AFTER} Until then, {OFF}.")
+        tell(OTHER if problem.result == "VERSION" else f"The board has no hapticlab firmware yet. {AFTER}")
+        tell(f"Until then, {OFF}.")
         return
     except HapticlabError:
         return  # flashing itself says what is wrong with the port
@@ -56,6 +55,11 @@ def before_flash(port, board, person=None, *, tell=print):
 
 OFF = "switch the supply of the motor off"
 AFTER = "After flashing the motor stays off until `hapticlab calibrate` has confirmed the wiring."
+#: settings of firmware 1 are lost; later ones may have the same layout, so that a confirmed wiring stays confirmed
+OTHER = (
+    "The board has firmware of another version, so its settings cannot be compared with what is built. Run `hapticlab calibrate` "
+    "after flashing, because the calibration may be lost, or the wiring of another paddle may still be confirmed."
+)
 
 
 def _compared(paddle, board, built):

@@ -67,7 +67,7 @@ def let_cool(paddle, person):
     """Wait until the board takes its motor to be cool enough; settings of a weaker motor make what it gave before count more."""
     if paddle.state()["heat"] <= 1:
         return
-    person.say("The board takes the motor to be warm. It is not driven until it has cooled, within some minutes.")
+    person.say("By its past forces, the motor is warm. The motor stays off until it has cooled, which takes some minutes.")
     until = paddle.exchange.now() + COOLS
     while paddle.state()["heat"] > 1 and paddle.exchange.now() < until:
         paddle.exchange.wait(lambda: False, LOOK)

@@ -65,8 +65,11 @@ def test_firmware_of_another_board_is_a_warning(ask):
 @pytest.mark.parametrize(
     ("problem", "words"),
     [
-        (LinkError("no paddle answers"), "no hapticlab firmware yet.\nAfter flashing the motor stays off"),
-        (LinkError("other tables", "VERSION"), "firmware of another version, whose settings will not be used.\nAfter"),
+        (LinkError("no paddle answers"), "no hapticlab firmware yet. After flashing the motor stays off"),
+        (
+            LinkError("other tables", "VERSION"),
+            "another version, so its settings cannot be compared with what is built. Run `",
+        ),
         (PortError("COM3 is in use", "busy"), ""),
     ],
 )

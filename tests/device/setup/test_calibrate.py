@@ -12,7 +12,7 @@ from hapticlab.device.board.settings import Settings, nominal
 from hapticlab.device.board.upload import read_settings
 from hapticlab.device.link.messages import MOTOR_LAWS, SETTINGS_STRUCT
 from hapticlab.device.setup import stored_settings
-from hapticlab.device.setup.calibrate import calibrate
+from hapticlab.device.setup.calibrate import calibrate, still_nominal
 from hapticlab.device.setup.force_constant import GRAVITY
 from hapticlab.device.setup.force_fit import fit_force
 from hapticlab.device.setup.sign_check import CLEAR, LOOKS, check_sign, intervals, judge, measure_sign
@@ -418,3 +418,8 @@ def test_all_of_it_in_one_go():
     assert "nominal    force_continuous, heating_time, speed_max, m, b: as shipped" in person.words
     assert kept_on_board(paddle) == found
     assert "calibrated 2026-11-21" in str(paddle)
+
+
+def test_constants_as_shipped_are_told_for_every_kind_of_paddle():
+    longhorn = nominal("longhorn", date=TODAY, metres_per_count=700e-6, force_full=2.5).to_float32()
+    assert still_nominal(longhorn)[0].startswith("nominal    force_continuous, heating_time, speed_max, m, b: as shipped")

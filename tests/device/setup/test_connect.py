@@ -63,7 +63,7 @@ def test_a_known_board_without_our_firmware_is_told_apart(plugged, monkeypatch):
 
 def test_firmware_of_another_version_is_refused_with_the_cure(monkeypatch):
     monkeypatch.setattr("hapticlab.device.board.greeting.table_hash", lambda: 1)
-    both = rf"firmware 1.0 uses a different version of the messages from hapticlab {hl.__version__}.*hapticlab flash"
+    both = rf"firmware 2.0 uses .* from firmware 2.0, which comes with hapticlab {hl.__version__}.*: hapticlab flash"
     with pytest.raises(LinkError, match=both):
         hl.connect("sim://hapkit")
 
@@ -92,7 +92,7 @@ def test_it_introduces_itself_in_a_line():
     port = hl.device.link.serial_ports.open_port("sim://hapkit")
     port.put_on(None, settings=kept)
     with SerialPaddle("sim://hapkit", port=port, T=5e-4) as paddle:
-        assert str(paddle) == "host 3F2A, firmware 1.0, T = 0.5 ms, calibrated 2026-11-20, |F| <= 5 N"
+        assert str(paddle) == "host 3F2A, firmware 2.0, T = 0.5 ms, calibrated 2026-11-20, |F| <= 5 N"
 
 
 def test_a_simulated_handle_that_starts_elsewhere_is_where_it_is():
@@ -127,7 +127,7 @@ def test_wrong_arguments_are_refused_in_words(call, words):
 
 def test_a_paddle_brings_its_period_and_wrong_values_name_the_range():
     with hl.connect("sim://hapkit", paddle=hl.SimulatedPaddle(m=1, b=1, T=2e-3)) as paddle:
-        assert paddle.T == 2e-3 and repr(paddle).startswith("<SerialPaddle sim://hapkit: host 0000, firmware 1.0, T = 2 ms")
+        assert paddle.T == 2e-3 and repr(paddle).startswith("<SerialPaddle sim://hapkit: host 0000, firmware 2.0, T = 2 ms")
         with pytest.raises(PaddleError, match=r"at = 10 m; the handle's travel is -0.5 to 0.5 m"):
             paddle.home(at=10)
         for wrong, words in (

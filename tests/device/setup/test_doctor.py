@@ -181,7 +181,7 @@ class TestBoard:
         assert str(report).count("needs a person") == 1 and "a person must move the handle" in " ".join(str(report).split())
         assert [r["name"] for r in report.records()][:2] == ["notebook", "computer"]
         assert repr(report) == f"Report({str(report).splitlines()[-1]})"
-        assert "the same as in this package; host 0000, firmware 1." in " ".join(str(report).split())
+        assert "the same as in this package; host 0000, firmware 2." in " ".join(str(report).split())
 
     def test_nominal_settings_are_to_be_measured_but_for_a_simulated_board(self):
         paddle = bench.paddle(store=nominal("hapkit").to_bytes())

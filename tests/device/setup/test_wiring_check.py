@@ -208,7 +208,7 @@ def test_a_weaker_motor_that_is_taken_to_be_warm_is_waited_for():
     calibrate(paddle, person, date=20261121, only="wiring")
     begun = paddle.exchange.now()
     stored_settings.let_cool(paddle, person)
-    assert "takes the motor to be warm" in person.words
+    assert "the motor is warm" in person.words
     assert paddle.state()["heat"] <= 1 and 25 < paddle.exchange.now() - begun < 43
 
 
