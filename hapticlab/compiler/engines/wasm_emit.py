@@ -1,0 +1,159 @@
+"""A program as the bytes of one WebAssembly module that runs it for many ticks, lane by lane.
+
+States travel in locals. What depends on parameters alone is computed before the loop over ticks; what only the outputs need
+is computed where they are stored; what only one arm of a select needs, where that arm is chosen, if it is much. The
+arithmetic of WebAssembly is IEEE 754, rounded after every instruction: the bits are those of the interpreter.
+"""
+
+import re
+from string import Template
+
+from ..ir.trace import reachable
+from .skipped_arms import Demand
+from .wasm_code import GET, SET, BlockCode, Functions, Locals
+from .wasm_module import module
+from .wasm_words import assemble, unsigned
+
+ARGUMENTS = ("ticks", "every", "stride", "resumed", "inputs", "parameters", "states", "outputs")
+#: $lane, $place, $row and $out are addresses, or begin as one; locals begin as 0
+FUNCTION = """
+loop
+  [parameters] [hoisted]
+  local.get $resumed
+  if
+    [resume]
+  else
+    local.get $inputs local.set $row [sample] [init]
+  end
+  i32.const 0 local.set $n
+  local.get $every local.set $left
+  local.get $inputs local.set $row
+  local.get $outputs local.get $lane i32.add local.set $out
+  loop
+    [sample] [tick]
+    local.get $left i32.const 1 i32.sub local.tee $left
+    i32.eqz
+    if
+      [kept] [outputs]
+      local.get $every local.set $left
+    end
+    [advance]
+    local.get $row i32.const $row_size i32.add local.set $row
+    local.get $n i32.const 1 i32.add local.tee $n
+    local.get $ticks i32.lt_s br_if 0
+  end
+  [save]
+  local.get $lane i32.const 8 i32.add local.tee $lane
+  local.get $stride i32.lt_s br_if 0
+end
+end
+"""
+#: float64 in memory <-> type of a channel
+LOADED = {"f64": "", "f32": "f32.demote_f64", "bool": "f64.const 0 f64.ne", "i32": "i32.trunc_sat_f64_s"}
+STORED = {"f64": "", "f32": "f64.promote_f32", "bool": "f64.convert_i32_u", "i32": "f64.convert_i32_s"}
+
+
+def emit(program):
+    """Return the bytes of a module that exports ``run(ticks, every, stride, resumed, inputs, parameters, states, outputs)``.
+
+    All are i32, and the last four are addresses in its memory: arrays as :meth:`hapticlab.compiler.engines.engine.Engine.run`
+    has them, where from one row to the next it is ``stride`` bytes, 8 a lane. ``states`` are read if ``resumed``, and always
+    written.
+
+    Examples
+    --------
+    >>> from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
+    >>> x, y = Instruction("input", (), "f32"), Instruction("neg", (0,), "f32")
+    >>> p = Program("p", (Channel("x"),), (), (), (Channel("F"),), Block(), Block((x, y), outputs=(1,)), T=1e-3)
+    >>> emit(p)[:4]
+    b'\\x00asm'
+    """
+    locals = Locals(len(ARGUMENTS))
+    names = {name: k for k, name in enumerate(ARGUMENTS)}
+    names |= {name: locals.take("i32") for name in ("lane", "place", "row", "out", "n", "left")}
+    leaves = {
+        leaf: [locals.take(c.type) for c in channels]
+        for leaf, channels in (("param", program.parameters), ("input", program.inputs), ("state", program.states))
+    }
+    channels, pushed = (program.parameters, program.inputs, program.states), [GET + unsigned(k) for k in leaves["state"]]
+    parts = _computed(program, locals, leaves) | {
+        "parameters": _load_lanes(names, "parameters", channels[0], leaves["param"]),
+        "resume": _load_lanes(names, "states", channels[2], leaves["state"]),
+        "sample": b"".join(
+            assemble(f"local.get {names['row']} f64.load {8 * k} {LOADED[c.type]} local.set {local}")
+            for k, (c, local) in enumerate(zip(channels[1], leaves["input"], strict=True))
+        ),
+        "save": _start(names, "states") + _store_lanes(names, "place", channels[2], pushed),
+    }
+    outputs = parts.pop("pushed")
+    parts["outputs"] = _store_lanes(names, "out", program.outputs, outputs)
+    text = Template(FUNCTION).substitute(names, row_size=8 * len(program.inputs))
+    pieces = re.split(r"\[(\w+)\]", text)  # words, a part, words, ...
+    code = b"".join(parts[piece] if k % 2 else assemble(piece) for k, piece in enumerate(pieces))
+    return module(len(ARGUMENTS), locals.types, code)
+
+
+def _computed(program, locals, leaves):
+    """Return the code of what a program computes by the name of the part, and of ``pushed``, the outputs."""
+    tick, functions = program.tick, Functions(locals)
+    fixed = needs_parameters_alone(tick)
+    stepped = [k for k in reachable(tick.instructions, tick.states) if k not in fixed]
+    kept = sorted({*reachable(tick.instructions, tick.outputs)} - {*stepped} - fixed)
+    hoisted = [k for k in reachable(tick.instructions, (*tick.states, *tick.outputs)) if k in fixed]
+    demand, code = Demand(tick), BlockCode(tick, locals, leaves, functions)
+    every = [demand.arranged(part) for part in (stepped, kept)]
+    code.plan(hoisted)
+    for items in every:
+        code.plan(items, demand.before)
+    code.keep(fixed.intersection(a for k in (*stepped, *kept) for a in demand.before(k)))
+    parts = {"hoisted": code.write(hoisted), "init": _init(program.init, locals, leaves, functions)}  # in the order in which
+    parts |= {"tick": code.write(every[0]), "kept": code.write(every[1])}  # they run: a later one may take a local that is free
+    parts["advance"] = _advance(leaves["state"], [code.pushed[k] for k in tick.states])
+    return parts | {"pushed": [code.pushed[k] for k in tick.outputs]}
+
+
+def _init(block, locals, leaves, functions):
+    code = BlockCode(block, locals, leaves, functions)
+    text = code.write(code.plan(reachable(block.instructions, block.states)))
+    for k in {*block.states}.intersection(code.local):
+        locals.give_back(code.local[k])
+    return text + _advance(leaves["state"], [code.pushed[k] for k in block.states])
+
+
+def needs_parameters_alone(block):
+    """Return the positions that are the same in every tick."""
+    same = set()
+    for k, i in enumerate(block.instructions):
+        if i.op in ("const", "param") or (i.args and same.issuperset(i.args)):
+            same.add(k)
+    return same
+
+
+def _advance(states, pushed):
+    """Return the code that gives the states their next values, all at once: one may need another's old value."""
+    changed = [(local, push) for local, push in zip(states, pushed, strict=True) if push != GET + unsigned(local)]
+    return b"".join(push for _, push in changed) + b"".join(SET + unsigned(local) for local, _ in reversed(changed))
+
+
+def _start(names, array):
+    return assemble(f"local.get {names[array]} local.get {names['lane']} i32.add local.set {names['place']}")
+
+
+def _next(names, place):
+    return assemble(f"local.get {names[place]} local.get {names['stride']} i32.add local.set {names[place]}")
+
+
+def _load_lanes(names, array, channels, locals):
+    """Return the code that reads this lane of each row of an array."""
+    code = _start(names, array)
+    for c, local in zip(channels, locals, strict=True):
+        code += assemble(f"local.get {names['place']} f64.load 0 {LOADED[c.type]} local.set {local}") + _next(names, "place")
+    return code
+
+
+def _store_lanes(names, place, channels, pushed):
+    """Return the code that writes this lane of a row a channel, from an address on."""
+    code = b""
+    for c, push in zip(channels, pushed, strict=True):
+        code += GET + unsigned(names[place]) + push + assemble(f"{STORED[c.type]} f64.store 0") + _next(names, place)
+    return code
