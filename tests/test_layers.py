@@ -92,8 +92,8 @@ def test_a_folder_is_a_room(folder):
 
 
 HEAVY = (
-    "pint", "llvmlite", "scipy", "matplotlib", "serial", "ipywidgets", "anywidget", "IPython", "tqdm", "distributed", "nbgrader",
-    "pytest", "numba",
+    "pint", "llvmlite", "wasmtime", "scipy", "matplotlib", "serial", "ipywidgets", "anywidget", "IPython", "tqdm", "distributed",
+    "nbgrader", "pytest", "numba",
 )  # fmt: skip
 COMMANDS = ("demo", "labs", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate", "bench")
 FIRST_CELL = """

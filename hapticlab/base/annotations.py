@@ -1,6 +1,7 @@
 """The types that public signatures share; only a type checker opens this module."""
 
 from os import PathLike
+from typing import Literal
 
 import numpy as np
 import sympy as sp
@@ -13,3 +14,6 @@ Term = sp.Expr | float | str
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 File = str | PathLike[str]
+#: what runs a program, and what runs one with a simulated paddle, float64 inside: names of hapticlab.compiler.engines.table
+Engine = Literal["auto", "llvm", "wasm", "interpreter", "vm"]
+PlantEngine = Literal["auto", "llvm", "wasm", "interpreter"]

@@ -1,4 +1,4 @@
-"""How a scene runs: one typed straight-line program, and three engines that execute it.
+"""How a scene runs: one typed straight-line program, and the engines that execute it.
 
 What follows is the way of a scene through the files of this package, in the order of the data. A belt over a pulley
 ties a carriage z, pulled by the handle through a coupler, to a weight y, which lands on the ground: a constraint and a

@@ -21,7 +21,7 @@ from .compensation_limit import CompensationLimit, compensation_limit
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..base.annotations import Array
+    from ..base.annotations import Array, PlantEngine
     from ..scene.laws.estimators import VelocityEstimate
 
 #: parts of the Coulomb friction looked at side by side, and how often the gap around the limit is divided again
@@ -98,7 +98,7 @@ def over_compensation(
     velocity: VelocityEstimate | None = None,
     up_to: float | None = None,
     duration: float | None = None,
-    engine: Literal["auto", "llvm", "interpreter"] = "auto",
+    engine: PlantEngine = "auto",
 ) -> OverCompensation:
     """Simulate a paddle whose dry friction is compensated more and more, until it keeps moving by itself.
 
@@ -118,7 +118,7 @@ def over_compensation(
         Largest part of the Coulomb friction; half as much again as the ideal limit unless given.
     duration : float, optional
         Of a run [s]; chosen by the damping left unless given.
-    engine : {"auto", "llvm", "interpreter"}
+    engine : {"auto", "llvm", "wasm", "interpreter"}
 
     Returns
     -------

@@ -47,7 +47,10 @@ def machine(program, engine):
     return lambda ticks, inputs, values: ready.run(ticks, inputs, values)
 
 
-@pytest.mark.parametrize("engine", ["interpreter", "vm", "vm with 8-bit words", "llvm"])
+WASM = pytest.param("wasm", marks=pytest.mark.machine_code)
+
+
+@pytest.mark.parametrize("engine", ["interpreter", "vm", "vm with 8-bit words", "llvm", WASM])
 @pytest.mark.parametrize("g", GOLDEN, ids=NAMES)
 def test_every_engine_gives_the_committed_bits(g, engine):
     program = program_of(g)

@@ -18,6 +18,7 @@ from ...errors import AnalysisError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ...base.annotations import Engine
     from ...scene.scene import Scene
     from .reference import Reference
 
@@ -76,7 +77,7 @@ def force_error(
     T: float | None = None,
     *,
     delay: float = 0.0,
-    engine: Literal["auto", "llvm", "interpreter", "vm"] = "auto",
+    engine: Engine = "auto",
 ) -> ForceError:
     """Compare the force of a program with a reference, under the reference's motion of the handle.
 
@@ -89,7 +90,7 @@ def force_error(
         Sampling period [s], of forces; a program has its own.
     delay : float
         After which a force is felt [s], for the held error.
-    engine : {"auto", "llvm", "interpreter", "vm"}
+    engine : {"auto", "llvm", "wasm", "interpreter", "vm"}
 
     Returns
     -------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +21,8 @@ from ...scene.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from ...base.annotations import PlantEngine
 
 
 @dataclass(frozen=True)
@@ -69,9 +71,7 @@ class Replay(ShowsItself):
         return "\n".join(lines)
 
 
-def replay(
-    view: Scene, log: Telemetry, *, every: int = 10, engine: Literal["auto", "llvm", "interpreter"] = "auto", **options: Any
-) -> Replay:
+def replay(view: Scene, log: Telemetry, *, every: int = 10, engine: PlantEngine = "auto", **options: Any) -> Replay:
     """Run a view over the recorded motion of the handle, at a slower rate than the record's.
 
     Parameters
@@ -83,7 +83,7 @@ def replay(
     every : int
         Rows of the record a tick of the view, >= 1. A view with memory of samples (a signal, a delay, x(n-1)) means
         something else at another rate, and needs 1.
-    engine : {"auto", "llvm", "interpreter"}
+    engine : {"auto", "llvm", "wasm", "interpreter"}
     **options
         Of hapticlab.compile: method, substeps, hold, dtype.
 

@@ -33,7 +33,7 @@ class LaneRuns:
     duration : float
         Of a run [s].
     workers : int
-    engine : {"auto", "llvm", "interpreter"}
+    engine : {"auto", "llvm", "wasm", "interpreter"}
     """
 
     def __init__(self, scene, duration, workers=-1, engine="auto"):

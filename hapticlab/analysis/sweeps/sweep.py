@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ...base.annotations import Array, File, Number
+    from ...base.annotations import Array, File, Number, PlantEngine
     from ...limits.limit import Limit
 
 #: what a sweep may say about how its scene is compiled; a parameter of that name goes first
@@ -127,7 +127,7 @@ def sweep(
     duration: Number = 1.0,
     *,
     metric: Literal["chatter", "growth", "contacts", "energy", "peak_force"] = "chatter",
-    engine: Literal["auto", "llvm", "interpreter"] = "auto",
+    engine: PlantEngine = "auto",
     progress: bool = True,
     workers: int | Callable[..., Iterable[Any]] = 1,
     resume: File | None = None,
@@ -154,12 +154,12 @@ def sweep(
         run. Driven motion (noise, a moving intent) is not distinguished from chatter. ``growth`` logarithm of the
         swing's ratio between these quarters [1/s]. ``contacts`` of the last half [1/s]. ``energy`` the most ever drawn
         from the environment [J]. ``peak_force`` [N].
-    engine : {"auto", "llvm", "interpreter"}
+    engine : {"auto", "llvm", "wasm", "interpreter"}
     progress : bool
         Show a bar when the sweep lasts longer than two seconds.
     workers : int or callable
-        So many at once, -1 for one a processor: threads, which is all that machine code needs; processes where llvmlite
-        is missing (a script then needs ``if __name__ == "__main__":``). Or what maps a function over a sequence as
+        So many at once, -1 for one a processor: threads, which is all that machine code needs; processes on the
+        interpreter (a script then needs ``if __name__ == "__main__":``). Or what maps a function over a sequence as
         ``map`` does: ``pool.imap_unordered`` of a multiprocessing pool, ``executor.map``, or a Dask cluster's
         ``client.get_executor().map``, where hapticlab must be installed too. It is called again and again, with 256
         chunks at most. A chunk carries a program, the axes' values that it takes, the paddle with its seed, and a range

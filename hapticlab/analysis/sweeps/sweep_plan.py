@@ -6,7 +6,7 @@ import textwrap
 import numpy as np
 
 from ... import __version__
-from ...compiler.engines.llvm import llvmlite_is_ready
+from ...compiler.engines.table import chosen
 from ...errors import AnalysisError, LiveConstantError, ProgramError
 from ...scene.notation.parameters import Parameter
 from ..records.chatter import SHORTEST
@@ -48,7 +48,7 @@ class Plan:
     @property
     def machine_code(self):
         """Whether the points run outside Python, so that threads run side by side."""
-        return self.engine == "llvm" or (self.engine == "auto" and llvmlite_is_ready())
+        return chosen(self.engine).side_by_side
 
     def chunks(self, records, workers):
         """Yield the chunks that no record covers; refuse records of another program."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from matplotlib.figure import Figure
+
+    from ...base.annotations import PlantEngine
 
 #: samples before the entry, so that laws with a memory know the approach
 APPROACH = 4
@@ -133,7 +135,7 @@ def compare_laws(
     laws: str | Iterable[str] = tuple(LAWS),
     entries: int = 16,
     rendering: Rendering = RENDERING,
-    engine: Literal["auto", "llvm", "interpreter"] = "auto",
+    engine: PlantEngine = "auto",
 ) -> LawComparison:
     """Render one wall by every law of the chapter, and compare a single bounce with the wall itself.
 

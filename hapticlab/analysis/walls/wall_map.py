@@ -107,7 +107,7 @@ class WallMaps:
         Where ``law`` is a scene: the parameter that is K.
     workers : int
         Threads, -1 for one a processor.
-    engine : {"auto", "llvm", "interpreter"}
+    engine : {"auto", "llvm", "wasm", "interpreter"}
     **axes
         Arrays by name.
     """

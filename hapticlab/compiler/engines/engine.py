@@ -1,16 +1,13 @@
-"""Choose an engine for a program. All three keep one contract; in float32 they give the same bits while numbers are finite."""
+"""Choose an engine for a program. All keep one contract; in float32 they give the same bits while numbers are finite."""
 
 import operator
 
 import numpy as np
 
-from ...errors import EngineMissingError, ProgramError
+from ...errors import ProgramError
 from ..ir.cache import Shared, instructions
-from .interpreter import Interpreter
-from .llvm import Llvm, llvmlite_is_ready, open_llvmlite
-from .vm import Vm
+from .table import chosen
 
-ENGINES = ("auto", "llvm", "interpreter", "vm")
 #: programs that are kept ready to run: instructions, and 600 for the 0.8 MB that llvm takes for the smallest; 1.4 kB each
 KERNELS = Shared(24_000, lambda kernel: 600 + kernel.program.size)
 
@@ -141,21 +138,13 @@ def load(program, engine="auto"):
     Parameters
     ----------
     program : Program
-    engine : {"auto", "llvm", "interpreter", "vm"}
-        "auto" is llvm where llvmlite is installed, else the interpreter. "vm" is the firmware's C machine built for this
-        computer; it takes float32 programs.
+    engine : {"auto", "llvm", "wasm", "interpreter", "vm"}
+        "auto" is llvm where llvmlite is installed, else wasm in a browser or where wasmtime is installed, else the
+        interpreter. "vm" is the firmware's C machine built for this computer; it takes float32 programs.
 
     Programs of the same instructions share the machine code, as :mod:`hapticlab.compiler.ir.cache` says.
     """
-    if engine not in ENGINES:
-        raise ProgramError(f"engine = {engine!r}; needs one of {', '.join(ENGINES)}")
-    kernels = {"interpreter": Interpreter, "llvm": Llvm, "vm": Vm}
-    if engine == "auto":
-        engine = "llvm" if llvmlite_is_ready() else "interpreter"
-    if engine not in kernels:
-        raise EngineMissingError(engine)
-    if engine == "llvm":
-        open_llvmlite()
+    record = chosen(engine)
     program.check_interface()
-    key = None if engine == "vm" else (engine, instructions(program))  # a vm remembers the faults of its last run
-    return Engine(program, KERNELS.get(key, lambda: kernels[engine](program)))
+    key = (record.name, instructions(program)) if record.shared else None
+    return Engine(program, KERNELS.get(key, lambda: record.kernel(program)))

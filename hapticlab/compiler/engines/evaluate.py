@@ -15,7 +15,7 @@ from .engine import load
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...base.annotations import Array
+    from ...base.annotations import Array, Engine
     from ..ir.program import Program
 
 
@@ -24,7 +24,7 @@ def evaluate(
     *,
     x: Sequence[float] | Array,
     v: Sequence[float] | Array | None = None,
-    engine: str = "auto",
+    engine: Engine = "auto",
     **values: float | str,
 ) -> Telemetry:
     """Run a compiled program over given samples of the handle and return the force and the channels.
@@ -39,7 +39,7 @@ def evaluate(
         Handle position [m], one a sample.
     v : sequence of float, optional
         Handle velocity [m/s], for a program that was compiled with ``velocity="measured"``; others estimate it.
-    engine : {"auto", "llvm", "interpreter", "vm"}
+    engine : {"auto", "llvm", "wasm", "interpreter", "vm"}
     **values : float or str
         Parameters by name, SI or texts with a unit; the program's own values unless given.
 

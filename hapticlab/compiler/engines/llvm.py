@@ -67,15 +67,6 @@ class Llvm:
         return self._compiled.get(width, lambda: _compile(emit(self.program if width == 1 else self._expanded, width)))
 
 
-def llvmlite_is_ready():
-    """True where llvmlite is installed and its library loads."""
-    try:
-        open_llvmlite()
-    except EngineMissingError:
-        return False
-    return True
-
-
 def open_llvmlite():
     """Return llvmlite's binding, ready to compile; EngineMissingError says what to install."""
     try:

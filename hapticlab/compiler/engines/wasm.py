@@ -130,15 +130,6 @@ def is_in_browser():
     return sys.platform == "emscripten"
 
 
-def wasm_is_ready():
-    """True where WebAssembly runs: in a browser, and where wasmtime is installed and its library loads."""
-    try:
-        open_wasm()
-    except EngineMissingError:
-        return False
-    return True
-
-
 def open_wasm():
     """Raise EngineMissingError, which says what to install, where WebAssembly does not run."""
     if not is_in_browser():

@@ -81,20 +81,30 @@ def assemble(text):
     return code
 
 
-@functools.cache
-def operation(op, type, operand):
-    """Return the bytes of an operation of a program, by the types of its result and of its first operand.
+def words(op, type, operand):
+    """Return the words of an operation of a program, by the types of its result and of its first operand.
 
-    The names in the words of its record: ``t`` and ``a`` are these types, ``convert`` goes from one real type to the other. Of
-    a real operand, ``bits`` is the integer type of its width, reached from i32 by ``widen`` and left by ``narrow``; ``field``
-    are the ones of an exponent, ``low`` and ``high`` the least and the greatest of a normal number.
+    The names in its record: ``t`` and ``a`` are these types, ``convert`` goes from one real type to the other. Of a real operand,
+    ``bits`` is the integer type of its width, reached from i32 by ``widen`` and left by ``narrow``; ``field`` are the ones of an
+    exponent, ``low`` and ``high`` the least and the greatest of a normal number.
+
+    Examples
+    --------
+    >>> words("lt", "bool", "f32")
+    'f32.lt'
     """
-    words = {"t": TYPES[type], "a": TYPES[operand], "convert": "f64.promote_f32" if type == "f64" else "f32.demote_f64"}
+    names = {"t": TYPES[type], "a": TYPES[operand], "convert": "f64.promote_f32" if type == "f64" else "f32.demote_f64"}
     if operand in LAYOUT:
         bits, mantissa, bias = LAYOUT[operand]
-        words |= {"bits": bits, "mantissa": mantissa, "bias": bias, "field": 2 * bias + 1, "low": 1 - bias, "high": bias}
-        words |= {"widen": "i64.extend_i32_u" * (bits == "i64"), "narrow": "i32.wrap_i64" * (bits == "i64")}
-    return assemble(OPERATIONS[op].wasm.format(**words))
+        names |= {"bits": bits, "mantissa": mantissa, "bias": bias, "field": 2 * bias + 1, "low": 1 - bias, "high": bias}
+        names |= {"widen": "i64.extend_i32_u" * (bits == "i64"), "narrow": "i32.wrap_i64" * (bits == "i64")}
+    return OPERATIONS[op].wasm.format(**names)
+
+
+@functools.cache
+def operation(op, type, operand):
+    """Return the bytes of an operation; see :func:`words`."""
+    return assemble(words(op, type, operand))
 
 
 def constant(value, type):

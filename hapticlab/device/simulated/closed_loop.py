@@ -8,6 +8,7 @@ import math
 from dataclasses import replace
 
 from ...compiler.engines.engine import load
+from ...compiler.engines.table import ENGINES
 from ...compiler.ir.cache import Shared, content, instructions
 from ...compiler.ir.program import Channel, Program
 from ...compiler.ir.trace import Builder, cast, equal, floor, select
@@ -98,8 +99,10 @@ def _linked(program, paddle, measure):
 
 def load_linked(linked, engine):
     """Return a linked program ready to run; its plant is float64, which the firmware's machine does not take."""
-    if engine not in ("auto", "llvm", "interpreter"):
-        raise PaddleError(f"engine = {engine!r}; a simulated paddle, float64 inside, runs on auto, llvm or interpreter.")
+    taken = ("auto", *(record.name for record in ENGINES.values() if record.float64))
+    if engine not in taken:
+        names = f"{', '.join(taken[:-1])} or {taken[-1]}"
+        raise PaddleError(f"engine = {engine!r}; a simulated paddle, float64 inside, runs on {names}.")
     return load(linked, engine)
 
 

@@ -11,6 +11,7 @@ from ...base.arguments import number
 from ...base.missed_events import warn_of_missed
 from ...base.telemetry import PaddleProfile, Telemetry
 from ...base.unusual import DEVICE, warn_of_unusual
+from ...compiler.engines.table import ENGINES
 from ...errors import PaddleError
 from ..hand.hand import Hand
 from ..hand.reacting_hand import Reacting, run_reacting
@@ -26,14 +27,12 @@ from .plant import delay_parts, dynamics, plant_of
 from .transition import smallest_mass
 
 if TYPE_CHECKING:
-    from ...base.annotations import Array, Number
+    from ...base.annotations import Array, Number, PlantEngine
     from ...compiler.ir.program import Program
     from ...scene.scene import Scene
 
 __all__ = ["SimulatedPaddle", "link", "load_linked"]
 
-#: ticks between two looks at the progress bar, by engine: some tenths of a second
-CHUNK = {"interpreter": 250, "llvm": 100_000}
 #: samples a run keeps, at most; a sweep keeps none
 LONGEST_RUN = 10_000_000
 #: in samples
@@ -271,7 +270,7 @@ class SimulatedPaddle(Paddle):
         *,
         x: Number = 0.0,
         v: Number = 0.0,
-        engine: str = "auto",
+        engine: PlantEngine = "auto",
         progress: bool = True,
         **options: Any,
     ) -> Telemetry:
@@ -284,7 +283,7 @@ class SimulatedPaddle(Paddle):
             [s], as 2.0 or "2 s"; rounded to whole samples.
         x, v : float or text
             Position [m] and velocity [m/s] at the first sample.
-        engine : {"auto", "llvm", "interpreter"}
+        engine : {"auto", "llvm", "wasm", "interpreter"}
         progress : bool
             Show a bar when the run lasts longer than two seconds.
         **options
@@ -311,7 +310,7 @@ class SimulatedPaddle(Paddle):
         if self.hand is not None and isinstance(self.hand.intent, Reacting):
             outputs = run_reacting(loaded, self, parameters, ticks, [c.name for c in linked.outputs])
         else:
-            outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, CHUNK[loaded.name], progress)
+            outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, ENGINES[loaded.name].chunk, progress)
         return warn_of_missed(self._telemetry(program, linked, outputs))
 
     def _telemetry(self, program, linked, outputs):

@@ -26,7 +26,7 @@ class Stepping:
     scene : Scene or Program
     x, v : float
         Position [m] and velocity [m/s] at the first sample.
-    engine : {"auto", "llvm", "interpreter"}
+    engine : {"auto", "llvm", "wasm", "interpreter"}
     **options
         Of hapticlab.compile.
 

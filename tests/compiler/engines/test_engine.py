@@ -1,12 +1,16 @@
 """One contract for every engine, and a sentence where it is broken or an engine is missing."""
 
+import builtins
 import subprocess
 import sys
+from typing import get_args
 
 import numpy as np
 import pytest
 
+from hapticlab.base import annotations
 from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.engines.table import ENGINES
 from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder, select
 from hapticlab.errors import EngineMissingError, ProgramError
@@ -28,10 +32,14 @@ def filtered_wall():
     )  # fmt: skip
 
 
-@pytest.fixture(params=["interpreter", "llvm"])
+WASM = pytest.param("wasm", marks=pytest.mark.machine_code)
+BROUGHT_BY = {"llvm": "llvmlite", "wasm": "wasmtime"}
+
+
+@pytest.fixture(params=["interpreter", "llvm", WASM])
 def engine(request):
-    if request.param == "llvm":
-        pytest.importorskip("llvmlite")
+    if request.param in BROUGHT_BY:
+        pytest.importorskip(BROUGHT_BY[request.param])
     return load(filtered_wall(), request.param)
 
 
@@ -92,7 +100,7 @@ def test_what_is_no_number_is_refused_in_words(engine, given, complaint):
         engine.run(**{**good, **given})
 
 
-@pytest.mark.parametrize("name", ["interpreter", "llvm", "vm"])
+@pytest.mark.parametrize("name", ["interpreter", "llvm", WASM, "vm"])
 def test_a_whole_number_must_be_an_int32_on_every_engine(name):
     b = Builder("f32")
     tick, one = b.leaf("state", 0, "i32"), b.const(1, "i32")
@@ -101,8 +109,8 @@ def test_a_whole_number_must_be_an_int32_on_every_engine(name):
     b = Builder("f32")
     init = b.block((), [b.const(0, "i32")])
     program = Program("count", (), (), (Channel("tick", "1", "i32"),), (Channel("F"),), init, block, 1e-3)
-    if name == "llvm":
-        pytest.importorskip("llvmlite")
+    if name in BROUGHT_BY:
+        pytest.importorskip(BROUGHT_BY[name])
     count = load(program, name)
     for most in (2**31 - 2, -(2**31)):
         assert count.run(1, states=[[most]]).states[0, 0] == most + 1
@@ -116,15 +124,43 @@ def test_auto_takes_llvm_where_it_is_installed():
     assert load(filtered_wall()).name == "llvm"
 
 
-def test_without_llvmlite_auto_interprets_and_llvm_says_what_to_do(monkeypatch):
+@pytest.mark.machine_code
+def test_auto_takes_wasm_where_only_wasmtime_is_installed(monkeypatch):
+    pytest.importorskip("wasmtime")
     monkeypatch.setitem(sys.modules, "llvmlite", None)
+    assert load(filtered_wall()).name == "wasm"
+
+
+def test_with_neither_auto_interprets_and_each_says_what_to_do(monkeypatch):
+    for engine, package in BROUGHT_BY.items():
+        monkeypatch.setitem(sys.modules, package, None)
+        with pytest.raises(EngineMissingError, match=f'"{engine}" needs {package}, .*do: pip install {package}, or use engine='):
+            load(filtered_wall(), engine)
     assert load(filtered_wall()).name == "interpreter"
-    with pytest.raises(EngineMissingError, match='do: pip install llvmlite, or use engine="interpreter"'):
-        load(filtered_wall(), "llvm")
+
+
+@pytest.mark.parametrize("problem", [OSError("no library for this system"), RuntimeError("unsupported platform")])
+def test_a_wasmtime_without_its_library_is_not_here(monkeypatch, problem):
+    def refuse(name, *rest, whole=builtins.__import__):
+        if name == "wasmtime":
+            raise problem
+        return whole(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", refuse)
+    assert not ENGINES["wasm"].is_here()
+
+
+def test_the_names_of_public_signatures_are_those_of_the_table():
+    automatic = [name for name, record in ENGINES.items() if record.automatic]
+    assert get_args(annotations.Engine) == ("auto", *ENGINES)
+    assert get_args(annotations.PlantEngine) == ("auto", *(name for name, record in ENGINES.items() if record.float64))
+    assert automatic == ["llvm", "wasm", "interpreter"]
+    for name, record in ENGINES.items():
+        assert record.kernel.name == record.name == name
 
 
 def test_an_unknown_engine_is_refused():
-    with pytest.raises(ProgramError, match="engine = 'fast'; needs one of auto, llvm, interpreter, vm"):
+    with pytest.raises(ProgramError, match="engine = 'fast'; needs one of auto, llvm, wasm, interpreter, vm"):
         load(filtered_wall(), "fast")
 
 
@@ -135,6 +171,6 @@ def test_a_damaged_program_is_refused_before_it_runs():
         load(bad)
 
 
-def test_importing_the_engines_does_not_import_llvmlite():
-    code = "import sys, hapticlab.compiler.engines.engine; sys.exit('llvmlite' in sys.modules)"
+def test_importing_the_engines_does_not_import_what_brings_them():
+    code = f"import sys, hapticlab.compiler.engines.engine; sys.exit(any(p in sys.modules for p in {[*BROUGHT_BY.values()]}))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

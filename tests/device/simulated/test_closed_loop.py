@@ -1,6 +1,6 @@
 """The linked program: delays against located events, lanes, engines, measures, and states of every type."""
 
-import importlib.util
+import itertools
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 
 from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.engines.table import ENGINES as TABLE
 from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder, cast, maximum, select
 from hapticlab.compiler.tick.compile_scene import compile
@@ -17,7 +18,7 @@ from hapticlab.errors import PaddleError
 from hapticlab.scene.notation.symbols import coordinate, n, parameters, t, v, when, x
 from hapticlab.scene.scene import Scene
 
-ENGINES = ["interpreter"] + ["llvm"] * (importlib.util.find_spec("llvmlite") is not None)
+ENGINES = [name for name, record in TABLE.items() if record.automatic and record.is_here()]
 HAND = Hand(m=0.02, b=1, k=200, push=0.6, intent=lambda t: 0.004 * np.sin(40 * t))
 EVERYTHING = {"m": 0.05, "b": 0.1, "T": 1e-3, "delay": 1.3e-3, "coulomb": 0.05, "force_max": 3.0, "hand": HAND}
 k, B, m, x_o = parameters("k B m x_o", units="N/m N*s/m kg m")
@@ -106,15 +107,15 @@ def test_lanes_equal_scalar(engine, given):
 
 
 @pytest.mark.wide
-@pytest.mark.skipif("llvm" not in ENGINES, reason="llvmlite is not installed")
+@pytest.mark.skipif(len(ENGINES) == 1, reason="neither llvmlite nor wasmtime is installed")
 @pytest.mark.parametrize("given", [{}, {"counts_per_metre": 1e5, "noise": 1e-5}])
 def test_engines_give_the_same_bits(given):
     coupler = k * (x(t) - z) + B * (v(t) - z.diff(t))
     mass = Scene(force=coupler, eom=[sp.Eq(m * z.diff(t, 2), coupler)], watch=[z])
     paddle = SimulatedPaddle(**EVERYTHING, **given)
-    logs = [paddle.run(mass(k=120, B=1, m=0.05), duration=0.1, engine=engine) for engine in ("interpreter", "llvm")]
-    for name in logs[0].columns:
-        assert np.array_equal(getattr(logs[0], name), getattr(logs[1], name)), name
+    logs = [paddle.run(mass(k=120, B=1, m=0.05), duration=0.1, engine=engine) for engine in ENGINES]
+    for name, other in itertools.product(logs[0].columns, logs[1:]):
+        assert np.array_equal(getattr(logs[0], name), getattr(other, name)), name
     assert np.ptp(logs[0].z) > 0
 
 

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 
+from hapticlab.compiler.engines.table import ENGINES
 from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
@@ -182,7 +183,7 @@ def test_chunks_do_not_change_the_run(spring, monkeypatch, given):
     paddle = SimulatedPaddle(**PLAIN, **given, hand=Hand(k=100, b=1, intent=lambda t: 0.01 * np.sin(9 * t)))
     program = spring(90.0, velocity=paddle.velocity)
     whole = paddle.run(program, duration=0.1, engine="interpreter", progress=False)
-    monkeypatch.setattr("hapticlab.device.simulated.simulated_paddle.CHUNK", {"interpreter": 7, "llvm": 7})
+    monkeypatch.setitem(ENGINES, "interpreter", dataclasses.replace(ENGINES["interpreter"], chunk=7))
     pieces = paddle.run(program, duration=0.1, engine="interpreter")
     for name in whole.columns:
         assert np.array_equal(getattr(whole, name), getattr(pieces, name)), name
