@@ -63,13 +63,14 @@ def _keyed(keys, words):
 
 def _pin(person, pins, part, role):
     """Ask for the pin of a terminal until it is one of the board's."""
-    numbers = {name.lower(): pin for pin, name in pins.names.items() if pin not in pins.busy}
+    free = {name: pin for pin, name in pins.names.items() if pin not in pins.busy}
+    printed = {name.removeprefix("D"): pin for name, pin in free.items()}  # as 4 or ~5 on an Uno; a Pico's 4 is its GP2
     while True:
-        typed = person.ask(f"Which pin of the board goes to {role} of the {part}, such as {pins.name(max(pins.quadrature[0]))}?")
-        found = numbers.get(typed.strip().lower())
+        typed = person.ask(f"Which pin of the board goes to {role} of the {part}?")
+        found = (free | printed).get(typed.strip().upper().lstrip("~"))
         if found is not None:
             return found
-        person.say(f"{typed!r} is not a free pin of this board; it has {', '.join(name.upper() for name in numbers)}")
+        person.say(f"{typed!r} is not a free pin of this board. Free pins are {', '.join(free)}.")
 
 
 def require_wiring(paddle):

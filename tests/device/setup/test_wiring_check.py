@@ -163,13 +163,18 @@ def test_a_known_paddle_is_chosen_by_its_number():
 
 def test_something_else_is_asked_pin_by_pin_until_the_board_can_do_it():
     wrong = ("encoder", "D2", "d3", "enable", "D7", "a0", "D10", "7812")
-    person = Typing(
-        "7", "e", *wrong[1:3], "3", *wrong[4:7], "3", "encoder", "2", "D2", "D3", "enable", "D7", "A0", "D11", "31372"
-    )
+    person = Typing("7", "e", *wrong[1:3], "3", *wrong[4:7], "3", "encoder", "13", "2", "~3", "enable", "7", "A0", "D11", "31372")
     found = ask_built(person, "uno")
     assert found.wiring == Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (7, 14, 11), (2, 3), 31_372)
     assert "EN on D10: the board has PWM on D3, D5, D6, D11. Move this wire to one of them." in person.said
-    assert any(said.startswith("'2' is not a free pin of this board; it has D2, D3") for said in person.said)
+    assert any(said.startswith("'13' is not a free pin of this board. Free pins are D2, D3") for said in person.said)
+
+
+def test_a_bare_number_is_no_pin_of_a_pico():
+    """On a Pico 4 is also the place of GP2 on the board's edge."""
+    person = Typing("other", "encoder", "4", "GP4", "gp5", "inputs", "GP14", "GP15", "20000")
+    assert ask_built(person, "pico").wiring.sensor_pins == (4, 5)
+    assert any(said.startswith("'4' is not a free pin of this board. Free pins are GP0") for said in person.said)
 
 
 def test_doctor_compares_what_is_built_with_what_the_board_is_told():
