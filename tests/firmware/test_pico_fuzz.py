@@ -131,3 +131,19 @@ def test_no_control_request_of_a_strange_host_stops_it():
             frames = Decoder().feed(chip.read())
             assert [frame.fields["token"] for frame in frames] == [k], f"request {kind:02x} {request:02x} {value:04x}"
         assert chip.facts["usb"]["errors"] == chip.facts["violations"] == []
+
+
+@pytest.mark.wide
+def test_plugged_in_again_it_forgets_a_request_that_was_cut():
+    """What was given for the old request answered the first one of the new session, and the computer found no port."""
+    with Pico(flash=flash_of(KEPT)) as chip:
+        chip.run(0.03)
+        for late in (20e-6, 30e-6, 40e-6, 60e-6, 80e-6):
+            chip.setup(struct.pack("<BBHHH", 0x80, 6, 0x200, 0, 75))  # its configuration: two packets
+            chip.run(late)
+            chip.attach(False)
+            chip.run(0.004)
+            chip.attach(True)
+            chip.run(0.03)
+            assert chip.configured, late
+        assert chip.facts["usb"]["errors"] == []

@@ -96,6 +96,14 @@ static void reply_with(const uint8_t *bytes, uint16_t count, uint16_t most)
     reply_next();
 }
 
+/* Take back what was given for a request that the computer gave up. */
+static void control_begin(void)
+{
+    BUFFER_CONTROL(0, IN) = BUFFER_CONTROL(0, OUT) = 0;
+    reply_left = 0;
+    coding_follows = 0;
+}
+
 static void refuse(void)
 {
     REGISTER(USB_STALL_ARM) = STALL_CONTROL;
@@ -140,8 +148,8 @@ static void answer_request(hl_core *core)
     static const uint8_t zeros[2];
     const uint8_t kind = REQUEST(0), request = REQUEST(1), value = REQUEST(2), index = REQUEST(4);
     const uint16_t most = (uint16_t)(REQUEST(6) | REQUEST(7) << 8);
+    control_begin();
     toggle[0][IN] = toggle[0][OUT] = 1;
-    coding_follows = 0;
     if ((kind & OF_CLASS) == CLASS) {
         if (request == SET_LINE_CODING && most == LINE_CODING_BYTES) {
             coding_follows = 1;
@@ -247,6 +255,7 @@ void usb_poll(hl_core *core)
         REGISTER(USB_SIE_STATUS) = BUS_RESET;
         address = 0;
         REGISTER(USB_ADDRESS) = 0;
+        control_begin();
         configure(0);
     }
     if (status & REQUESTED) {
