@@ -53,7 +53,7 @@ def before_flash(port, board, person=None, *, tell=print):
         paddle.close()
 
 
-OFF = "switch the supply of the motor off"
+OFF, AGAIN = "switch the supply of the motor off", "run `hapticlab calibrate --only wiring` after flashing"
 AFTER = "After flashing the motor stays off until `hapticlab calibrate` has confirmed the wiring."
 #: settings of firmware 1 are lost; later ones may have the same layout, so that a confirmed wiring stays confirmed
 OTHER = (
@@ -73,7 +73,7 @@ def _compared(paddle, board, built):
     told = built_as(board_with_pins(has), Wiring.of(kept))
     state = "confirmed" if kept.wired else "not confirmed"
     if built is None:
-        yield f"The board is set to the wiring {told.in_short()}, {state}. If another one is built, {OFF}."
+        yield f"The board is set to the wiring {told.in_short()}, {state}. If another one is built, {OFF}, and {AGAIN}."
     elif built.wiring == told.wiring:
         yield f"The board is set to this wiring, {state}."
     else:

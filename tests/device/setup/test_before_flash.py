@@ -51,6 +51,7 @@ def test_another_wiring_is_a_warning_and_takes_back_what_was_confirmed(ask):
 def test_nobody_to_ask_is_told_what_is_stored(ask):
     told, store, _ = ask(changed(HAPKIT, wired=0, checked=0).to_bytes())
     assert told.startswith("The board is set to the wiring hapkit (PWM D5, DIR D8, OUT A2), not confirmed. If another one")
+    assert told.endswith("run `hapticlab calibrate --only wiring` after flashing.")
     assert settings_in(store).wired == 0
 
 
