@@ -46,7 +46,7 @@ def connect(
     >>> import hapticlab as hl
     >>> with hl.connect("sim://hapkit") as paddle:
     ...     print(paddle)
-    host 0000, firmware 1.0, T = 1 ms, nominal constants, not calibrated, |F| <= 3.3 N
+    host 0000, firmware 2.0, T = 1 ms, nominal constants, not calibrated, |F| <= 3.3 N
     """
     if paddle is not None and not isinstance(paddle, SimulatedPaddle):
         raise PaddleError(f"paddle = {paddle!r}; needs a SimulatedPaddle, the mechanics of a simulated board.")
