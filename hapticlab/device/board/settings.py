@@ -187,13 +187,27 @@ class Settings(ShowsItself):
         return f"what a board keeps of paddle {self.ident:04X}: {found}"
 
     def _facts(self):
-        return [Fact(name, getattr(self, name), unit, meaning) for _, name, unit, meaning in SETTINGS[1:-1]]
+        return [Fact(name, _in_words(name, getattr(self, name)), unit, meaning) for _, name, unit, meaning in SETTINGS[1:-1]]
 
     def __str__(self):
         rows = {name: (unit, meaning) for _, name, unit, meaning in SETTINGS}
-        lines = [f"{f.name:<17} {getattr(self, f.name):<12.7g} {'' if rows[f.name][0] == '1' else rows[f.name][0]:<6}"
-                 f" {rows[f.name][1]}" for f in fields(self)]  # fmt: skip
+        shown = {f.name: _in_words(f.name, getattr(self, f.name)) for f in fields(self)}
+        lines = [
+            f"{name:<17} {f'{value:.7g}' if isinstance(value, float) else value:<17} "
+            f"{'' if rows[name][0] == '1' else rows[name][0]:<6} {rows[name][1]}"
+            for name, value in shown.items()
+        ]
         return "\n".join([*lines, "nominal: no value here was measured on this paddle"] if self.is_nominal else lines)
+
+
+def _in_words(name, value):
+    """Return what a number of the settings stands for: a paddle's name, pins, or a row of a table; else the number."""
+    if name == "ident":
+        return f"{value:04X}"
+    if name in ("motor_pins", "sensor_pins"):
+        return ", ".join(map(str, pins_of(value))) or "none"
+    table = {"sensor": SENSORS, "drive": DRIVES, "motor_law": MOTOR_LAWS}.get(name, {})
+    return next((word for word, number in table.items() if number == value), value)
 
 
 #: of the full force, along the measured curve

@@ -205,3 +205,18 @@ def test_print_shows_every_field_with_its_unit():
     text = str(settings())
     assert all(name in text for name in SETTINGS) and "N s/m" in text and "nominal" in text
     assert isinstance(str(settings(date=20261121)), str) and "nominal" not in str(settings(date=20261121))
+
+
+def test_settings_are_printed_as_people_call_them_with_every_digit():
+    """A date of eight digits and the four bytes of pins are no measurements, to be rounded to seven digits."""
+    kept = nominal("longhorn", ident=0x3F2A, date=20261120, wired=1)
+    printed = {line.split()[0]: line[18:36].strip() for line in str(kept).splitlines()}
+    assert (printed["ident"], printed["date"], printed["motor_pins"], printed["sensor_pins"]) == (
+        "3F2A",
+        "20261120",
+        "4, 5, 11",
+        "2, 3",
+    )
+    assert (printed["sensor"], printed["drive"], printed["motor_law"]) == ("QUADRATURE", "TWO_INPUTS_ENABLE", "LINEAR")
+    assert (printed["carrier"], printed["metres_per_count"]) == ("31372", "0.0007417649")
+    assert "TWO_INPUTS_ENABLE" in kept._repr_html_() and "4, 5, 11" in kept._repr_html_()
