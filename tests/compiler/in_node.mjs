@@ -18,7 +18,7 @@ function run({ code, ticks, every, lanes, size, resumed, rounds = 0, ...arrays }
   const module_bytes = bytes(code), names = ["inputs", "parameters", "states"];
   const began = performance.now();
   const module = new WebAssembly.Module(module_bytes);
-  const compiled = performance.now() - began;
+  let ready = performance.now() - began;
   const parts = names.map((name) => bytes(arrays[name]));
   parts.push(new Uint8Array(8 * size));
   const total = parts.reduce((sum, part) => sum + part.length, 64);  // not from 0 on, as in a library's host
@@ -30,14 +30,17 @@ function run({ code, ticks, every, lanes, size, resumed, rounds = 0, ...arrays }
     new Uint8Array(memory.buffer, end, part.length).set(part);
     end += part.length;
   }
+  const start = performance.now();
   const { run } = new WebAssembly.Instance(module, { env: { memory } }).exports;
+  if (rounds) run(1, 2, 8 * lanes, 0, ...places);  // compiled when first called
+  ready += performance.now() - start;
   const go = () => run(ticks, every, 8 * lanes, resumed ? 1 : 0, ...places);
   go();
   const results = {
     needs: needs(module_bytes),
     states: text(new Uint8Array(memory.buffer, places[2], parts[2].length)),
     outputs: text(new Uint8Array(memory.buffer, places[3], parts[3].length)),
-    compiled,
+    ready,
   };
   let best = Infinity;
   for (let k = 0; k < rounds; k++) {

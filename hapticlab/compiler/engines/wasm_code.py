@@ -5,8 +5,8 @@ choose; so every bit is as it would be without branches. (0 rather than what a l
 live on into the next, and keep a register.)
 """
 
+import functools
 import math
-from collections import Counter
 from itertools import groupby
 
 from ..ir.operations import ELEMENTARY, OPERATIONS
@@ -15,7 +15,19 @@ from .side_by_side import arithmetic
 from .skipped_arms import Arm
 from .wasm_words import OPCODES, TYPES, constant, operation, unsigned
 
-GET, SET = OPCODES["local.get"], OPCODES["local.set"]
+
+@functools.cache
+def get(local):
+    """Return the code that pushes a local."""
+    return OPCODES["local.get"] + unsigned(local)
+
+
+@functools.cache
+def put(local):
+    """Return the code that takes a local from the stack."""
+    return OPCODES["local.set"] + unsigned(local)
+
+
 _ZERO = {type: constant(0, type) for type in TYPES}
 
 
@@ -87,12 +99,13 @@ class BlockCode:
 
     def __init__(self, block, locals, leaves, functions):
         self._instructions, self._locals, self._functions = block.instructions, locals, functions
-        self.local, self.pushed, self._users = {}, {}, {}
+        self.local, self.pushed, self._users = {}, {}, [[] for _ in block.instructions]
         for k, i in enumerate(block.instructions):
             if i.op in LEAVES:
-                self.pushed[k] = constant(i.value, i.type) if i.op == "const" else GET + unsigned(leaves[i.op][i.index])
+                self.pushed[k] = constant(i.value, i.type) if i.op == "const" else get(leaves[i.op][i.index])
         #: how often each is used from here on
-        self._left = Counter(dict.fromkeys((*block.outputs, *block.states), math.inf))
+        self._left = [0] * len(block.instructions)
+        self.keep((*block.outputs, *block.states))
 
     def plan(self, items, before=None):
         """Count the uses of positions and arms that will be written, and return them; ``before(k)`` must be known before k."""
@@ -100,16 +113,18 @@ class BlockCode:
             if isinstance(item, Arm):
                 self._left[item.condition] += 1
                 self.plan(item.items, before)
-            else:
-                args = self._instructions[item].args
-                self._left.update(args)
-                for a in before(item) if before else args:
-                    self._users.setdefault(a, []).append(item)
+                continue
+            args = self._instructions[item].args
+            for a in args:
+                self._left[a] += 1
+            for a in before(item) if before else args:
+                self._users[a].append(item)
         return items
 
     def keep(self, positions):
         """Never give their locals back."""
-        self._left.update(dict.fromkeys(positions, math.inf))
+        for k in positions:
+            self._left[k] = math.inf
 
     def write(self, items):
         """Return the code that computes positions, and arms."""
@@ -143,7 +158,7 @@ class BlockCode:
         i = self._instructions[positions[0]]
         ops = tuple(sorted({self._instructions[k].op for k in positions}))
         arguments, inner, results = self._functions.code(ops, i.type)
-        code = b"".join(self.pushed[a] for a in i.args) + b"".join(SET + unsigned(local) for local in reversed(arguments))
+        code = b"".join(self.pushed[a] for a in i.args) + b"".join(put(local) for local in reversed(arguments))
         code += inner
         for k in positions:
             self._used(i.args)
@@ -159,7 +174,7 @@ class BlockCode:
         if after:
             code += OPCODES["else"]
         for k in sorted(after):
-            code += _ZERO[self._instructions[k].type] + SET + unsigned(self.local[k])
+            code += _ZERO[self._instructions[k].type] + put(self.local[k])
         return code + OPCODES["end"]
 
     def _used(self, positions):
@@ -171,7 +186,7 @@ class BlockCode:
     def _result(self, k):
         """Return the code that takes a result from the stack."""
         number = self.local[k] = self._locals.take(self._instructions[k].type)
-        self.pushed[k] = GET + unsigned(number)
+        self.pushed[k] = get(number)
         if not self._left[k]:
             self._locals.give_back(number)
-        return SET + unsigned(number)
+        return put(number)

@@ -10,9 +10,9 @@ from string import Template
 
 from ..ir.trace import reachable
 from .skipped_arms import Demand
-from .wasm_code import GET, SET, BlockCode, Functions, Locals
+from .wasm_code import BlockCode, Functions, Locals, get, put
 from .wasm_module import module
-from .wasm_words import assemble, unsigned
+from .wasm_words import assemble
 
 ARGUMENTS = ("ticks", "every", "stride", "resumed", "inputs", "parameters", "states", "outputs")
 #: $lane, $place, $row and $out are addresses, or begin as one; locals begin as 0
@@ -75,7 +75,7 @@ def emit(program):
         leaf: [locals.take(c.type) for c in channels]
         for leaf, channels in (("param", program.parameters), ("input", program.inputs), ("state", program.states))
     }
-    channels, pushed = (program.parameters, program.inputs, program.states), [GET + unsigned(k) for k in leaves["state"]]
+    channels, pushed = (program.parameters, program.inputs, program.states), [get(k) for k in leaves["state"]]
     parts = _computed(program, locals, leaves) | {
         "parameters": _load_lanes(names, "parameters", channels[0], leaves["param"]),
         "resume": _load_lanes(names, "states", channels[2], leaves["state"]),
@@ -98,8 +98,9 @@ def _computed(program, locals, leaves):
     tick, functions = program.tick, Functions(locals)
     fixed = needs_parameters_alone(tick)
     stepped = [k for k in reachable(tick.instructions, tick.states) if k not in fixed]
-    kept = sorted({*reachable(tick.instructions, tick.outputs)} - {*stepped} - fixed)
-    hoisted = [k for k in reachable(tick.instructions, (*tick.states, *tick.outputs)) if k in fixed]
+    needed = reachable(tick.instructions, (*tick.states, *tick.outputs))
+    kept = sorted({*needed} - {*stepped} - fixed)
+    hoisted = [k for k in needed if k in fixed]
     demand, code = Demand(tick), BlockCode(tick, locals, leaves, functions)
     every = [demand.arranged(part) for part in (stepped, kept)]
     code.plan(hoisted)
@@ -131,8 +132,8 @@ def needs_parameters_alone(block):
 
 def _advance(states, pushed):
     """Return the code that gives the states their next values, all at once: one may need another's old value."""
-    changed = [(local, push) for local, push in zip(states, pushed, strict=True) if push != GET + unsigned(local)]
-    return b"".join(push for _, push in changed) + b"".join(SET + unsigned(local) for local, _ in reversed(changed))
+    changed = [(local, push) for local, push in zip(states, pushed, strict=True) if push != get(local)]
+    return b"".join(push for _, push in changed) + b"".join(put(local) for local, _ in reversed(changed))
 
 
 def _start(names, array):
@@ -155,5 +156,5 @@ def _store_lanes(names, place, channels, pushed):
     """Return the code that writes this lane of a row a channel, from an address on."""
     code = b""
     for c, push in zip(channels, pushed, strict=True):
-        code += GET + unsigned(names[place]) + push + assemble(f"{STORED[c.type]} f64.store 0") + _next(names, place)
+        code += get(names[place]) + push + assemble(f"{STORED[c.type]} f64.store 0") + _next(names, place)
     return code
