@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from hapticlab.compiler.engines.wasm_emit import emit
+from hapticlab.compiler.engines.wasm_emit import at_once, emit
+from hapticlab.compiler.engines.wasm_lanes import ONE
 
 NODE = shutil.which("node")
 
@@ -16,10 +17,11 @@ NODE = shutil.which("node")
 def case(program, ticks, inputs, parameters, states=None, every=1, rounds=0):
     """Return a case: a run as the contract of an engine has it, timed so many times after the first."""
     lanes = parameters.shape[1]
+    width = at_once(program) if lanes % 2 == 0 else ONE
     carried = np.zeros((len(program.states), lanes)) if states is None else states
     arrays = {"inputs": inputs, "parameters": parameters, "states": carried}
     return {
-        "code": _text(emit(program)), "ticks": ticks, "every": every, "lanes": lanes, "resumed": states is not None,
+        "code": _text(emit(program, width)), "ticks": ticks, "every": every, "lanes": lanes, "resumed": states is not None,
         "size": ticks // every * len(program.outputs) * lanes, "rounds": rounds, **{k: _text(a) for k, a in arrays.items()},
         "shapes": [(ticks // every, len(program.outputs), lanes), carried.shape],
     }  # fmt: skip

@@ -3,6 +3,7 @@
 import atexit
 import ctypes
 import functools
+import math
 import os
 import sys
 import tempfile
@@ -11,7 +12,9 @@ import weakref
 import numpy as np
 
 from ...errors import EngineMissingError, ProgramError
-from .wasm_emit import emit
+from ..ir.cache import Shared
+from .wasm_emit import at_once, emit
+from .wasm_lanes import ONE
 
 #: numbers of inputs and outputs that wasmtime's memory holds at a time: they stay in a processor's cache
 ROOM = 32_768
@@ -25,19 +28,31 @@ class Wasm:
 
     def __init__(self, program):
         self.program = program.verify()
-        self._host = (Library if is_in_browser() else Wasmtime)(program.name, emit(program))
+        self._hosts = Shared(math.inf)
         if is_in_browser():
-            self.bound = self._host.bound
+            self.bound = self._host(ONE).bound
 
     def run(self, ticks, inputs, parameters, states=None, every=1):
         lanes = parameters.shape[1]
-        outputs = np.empty((ticks // every, len(self.program.outputs), lanes))
-        carried = np.empty((len(self.program.states), lanes))
+        width = ONE if lanes == 1 else self._at_once
+        more = -lanes % width.count
+        outputs = np.empty((ticks // every, len(self.program.outputs), lanes + more))
+        carried = np.empty((len(self.program.states), lanes + more))
         if states is not None:
-            carried[:] = states
+            carried[:, :lanes] = states
+            carried[:, lanes:] = carried[:, lanes - 1 : lanes]
+        parameters = np.pad(parameters, ((0, 0), (0, more)), "edge")
         inputs, parameters = (np.ascontiguousarray(a, float) for a in (inputs, parameters))
-        self._host.run(ticks, every, states is not None, inputs, parameters, carried, outputs)
-        return outputs, carried
+        self._host(width).run(ticks, every, states is not None, inputs, parameters, carried, outputs)
+        return outputs[..., :lanes], carried[:, :lanes]
+
+    @functools.cached_property
+    def _at_once(self):
+        return at_once(self.program)
+
+    def _host(self, width):
+        kind = Library if is_in_browser() else Wasmtime
+        return self._hosts.get(width.count, lambda: kind(self.program.name, emit(self.program, width)))
 
 
 class Library:

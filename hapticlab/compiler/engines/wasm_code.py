@@ -13,7 +13,7 @@ from ..ir.operations import ELEMENTARY, OPERATIONS
 from ..ir.program import LEAVES
 from .side_by_side import arithmetic
 from .skipped_arms import Arm
-from .wasm_words import OPCODES, TYPES, constant, operation, unsigned
+from .wasm_words import OPCODES, unsigned
 
 
 @functools.cache
@@ -28,9 +28,6 @@ def put(local):
     return OPCODES["local.set"] + unsigned(local)
 
 
-_ZERO = {type: constant(0, type) for type in TYPES}
-
-
 class Locals:
     """The locals of a function after its arguments, taken and given back; those of ``apart`` are never taken here.
 
@@ -38,17 +35,22 @@ class Locals:
     ----------
     types : list of str
         Value type of each.
+    lanes : Lanes
+        What they hold.
     """
 
-    def __init__(self, arguments, types=None):
-        self.arguments, self.types, self._free = arguments, [] if types is None else types, {}
+    def __init__(self, arguments, lanes, types=None):
+        self.arguments, self.lanes, self.types, self._free = arguments, lanes, [] if types is None else types, {}
 
     def apart(self):
-        return Locals(self.arguments, self.types)
+        return Locals(self.arguments, self.lanes, self.types)
 
     def take(self, type):
         """Return the number of a local that is free, for a type of a program."""
-        type = TYPES[type]
+        return self.take_value(self.lanes.types[type])
+
+    def take_value(self, type):
+        """Return the number of a local that is free, for a value type."""
         if self._free.get(type):
             return self._free[type].pop()
         self.types.append(type)
@@ -98,11 +100,11 @@ class BlockCode:
     """
 
     def __init__(self, block, locals, leaves, functions):
-        self._instructions, self._locals, self._functions = block.instructions, locals, functions
+        self._instructions, self._locals, self._functions, self._lanes = block.instructions, locals, functions, locals.lanes
         self.local, self.pushed, self._users = {}, {}, [[] for _ in block.instructions]
         for k, i in enumerate(block.instructions):
             if i.op in LEAVES:
-                self.pushed[k] = constant(i.value, i.type) if i.op == "const" else get(leaves[i.op][i.index])
+                self.pushed[k] = self._lanes.constant(i.value, i.type) if i.op == "const" else get(leaves[i.op][i.index])
         #: how often each is used from here on
         self._left = [0] * len(block.instructions)
         self.keep((*block.outputs, *block.states))
@@ -149,7 +151,7 @@ class BlockCode:
                 continue
             for a in (*i.args[1:], i.args[0]) if i.op == "select" else i.args:
                 code += self.pushed[a]
-            code += operation(i.op, i.type, self._instructions[i.args[0]].type)
+            code += self._lanes.operation(i.op, i.type, self._instructions[i.args[0]].type)
             self._used(i.args)
             code += self._result(k)
         return code
@@ -166,7 +168,7 @@ class BlockCode:
         return code
 
     def _arm(self, arm):
-        code = self.pushed[arm.condition] + OPCODES["i32.eqz"] * (not arm.chosen) + OPCODES["if"]
+        code = self.pushed[arm.condition] + self._lanes.branch(arm.chosen)
         self._used((arm.condition,))
         code += self.write(arm.items)
         within = set(arm.positions())
@@ -174,7 +176,7 @@ class BlockCode:
         if after:
             code += OPCODES["else"]
         for k in sorted(after):
-            code += _ZERO[self._instructions[k].type] + put(self.local[k])
+            code += self._lanes.constant(0, self._instructions[k].type) + put(self.local[k])
         return code + OPCODES["end"]
 
     def _used(self, positions):

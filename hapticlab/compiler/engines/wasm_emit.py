@@ -1,4 +1,4 @@
-"""A program as the bytes of one WebAssembly module that runs it for many ticks, lane by lane.
+"""A program as the bytes of one WebAssembly module that runs it for many ticks, one lane or two at a time.
 
 States travel in locals. What depends on parameters alone is computed before the loop over ticks; what only the outputs need
 is computed where they are stored; what only one arm of a select needs, where that arm is chosen, if it is much. The
@@ -9,8 +9,9 @@ import re
 from string import Template
 
 from ..ir.trace import reachable
-from .skipped_arms import Demand
+from .skipped_arms import Arm, Demand, work
 from .wasm_code import BlockCode, Functions, Locals, get, put
+from .wasm_lanes import ONE, TWO
 from .wasm_module import module
 from .wasm_words import assemble
 
@@ -43,22 +44,19 @@ loop
     local.get $ticks i32.lt_s br_if 0
   end
   [save]
-  local.get $lane i32.const 8 i32.add local.tee $lane
+  local.get $lane i32.const $lanes_size i32.add local.tee $lane
   local.get $stride i32.lt_s br_if 0
 end
 end
 """
-#: float64 in memory <-> type of a channel
-LOADED = {"f64": "", "f32": "f32.demote_f64", "bool": "f64.const 0 f64.ne", "i32": "i32.trunc_sat_f64_s"}
-STORED = {"f64": "", "f32": "f64.promote_f32", "bool": "f64.convert_i32_u", "i32": "f64.convert_i32_s"}
 
 
-def emit(program):
+def emit(program, lanes=ONE):
     """Return the bytes of a module that exports ``run(ticks, every, stride, resumed, inputs, parameters, states, outputs)``.
 
     All are i32, and the last four are addresses in its memory: arrays as :meth:`hapticlab.compiler.engines.engine.Engine.run`
-    has them, where from one row to the next it is ``stride`` bytes, 8 a lane. ``states`` are read if ``resumed``, and always
-    written.
+    has them, where from one row to the next it is ``stride`` bytes, 8 a lane: so many lanes as fit without a rest. ``states``
+    are read if ``resumed``, and always written. Lanes are computed one at a time, or as many as :func:`at_once` says.
 
     Examples
     --------
@@ -68,26 +66,26 @@ def emit(program):
     >>> emit(p)[:4]
     b'\\x00asm'
     """
-    locals = Locals(len(ARGUMENTS))
+    locals = Locals(len(ARGUMENTS), lanes)
     names = {name: k for k, name in enumerate(ARGUMENTS)}
-    names |= {name: locals.take("i32") for name in ("lane", "place", "row", "out", "n", "left")}
+    names |= {name: locals.take_value("i32") for name in ("lane", "place", "row", "out", "n", "left")}
     leaves = {
         leaf: [locals.take(c.type) for c in channels]
         for leaf, channels in (("param", program.parameters), ("input", program.inputs), ("state", program.states))
     }
     channels, pushed = (program.parameters, program.inputs, program.states), [get(k) for k in leaves["state"]]
     parts = _computed(program, locals, leaves) | {
-        "parameters": _load_lanes(names, "parameters", channels[0], leaves["param"]),
-        "resume": _load_lanes(names, "states", channels[2], leaves["state"]),
+        "parameters": _load_lanes(names, lanes, "parameters", channels[0], leaves["param"]),
+        "resume": _load_lanes(names, lanes, "states", channels[2], leaves["state"]),
         "sample": b"".join(
-            assemble(f"local.get {names['row']} f64.load {8 * k} {LOADED[c.type]} local.set {local}")
+            assemble(f"local.get {names['row']} {lanes.load_shared} {8 * k} {lanes.loaded[c.type]} local.set {local}")
             for k, (c, local) in enumerate(zip(channels[1], leaves["input"], strict=True))
         ),
-        "save": _start(names, "states") + _store_lanes(names, "place", channels[2], pushed),
+        "save": _start(names, "states") + _store_lanes(names, lanes, "place", channels[2], pushed),
     }
     outputs = parts.pop("pushed")
-    parts["outputs"] = _store_lanes(names, "out", program.outputs, outputs)
-    text = Template(FUNCTION).substitute(names, row_size=8 * len(program.inputs))
+    parts["outputs"] = _store_lanes(names, lanes, "out", program.outputs, outputs)
+    text = Template(FUNCTION).substitute(names, row_size=8 * len(program.inputs), lanes_size=8 * lanes.count)
     pieces = re.split(r"\[(\w+)\]", text)  # words, a part, words, ...
     code = b"".join(parts[piece] if k % 2 else assemble(piece) for k, piece in enumerate(pieces))
     return module(len(ARGUMENTS), locals.types, code)
@@ -121,6 +119,17 @@ def _init(block, locals, leaves, functions):
     return text + _advance(leaves["state"], [code.pushed[k] for k in block.states])
 
 
+def at_once(program):
+    """Return how many lanes of a program are computed at once where there are several: two, or one where most may be skipped.
+
+    Two compute what either of them needs. tests/benchmarks/wasm_engine.py measures both.
+    """
+    instructions = program.tick.instructions
+    items = Demand(program.tick).arranged(range(len(instructions)))
+    skipped = sum(work(instructions[k]) for arm in items if isinstance(arm, Arm) for k in arm.positions())
+    return ONE if 2 * skipped > sum(map(work, instructions)) else TWO
+
+
 def needs_parameters_alone(block):
     """Return the positions that are the same in every tick."""
     same = set()
@@ -144,17 +153,17 @@ def _next(names, place):
     return assemble(f"local.get {names[place]} local.get {names['stride']} i32.add local.set {names[place]}")
 
 
-def _load_lanes(names, array, channels, locals):
+def _load_lanes(names, lanes, array, channels, locals):
     """Return the code that reads this lane of each row of an array."""
     code = _start(names, array)
     for c, local in zip(channels, locals, strict=True):
-        code += assemble(f"local.get {names['place']} f64.load 0 {LOADED[c.type]} local.set {local}") + _next(names, "place")
+        code += get(names["place"]) + assemble(f"{lanes.load} 0 {lanes.loaded[c.type]}") + put(local) + _next(names, "place")
     return code
 
 
-def _store_lanes(names, place, channels, pushed):
+def _store_lanes(names, lanes, place, channels, pushed):
     """Return the code that writes this lane of a row a channel, from an address on."""
     code = b""
     for c, push in zip(channels, pushed, strict=True):
-        code += get(names[place]) + push + assemble(f"{STORED[c.type]} f64.store 0") + _next(names, place)
+        code += get(names[place]) + push + assemble(f"{lanes.stored[c.type]} {lanes.store} 0") + _next(names, place)
     return code

@@ -3,15 +3,10 @@
 Sections named here are those of the WebAssembly Core Specification 2.0, https://www.w3.org/TR/wasm-core-2/.
 """
 
-import functools
 import struct
 
-from ..ir.operations import OPERATIONS
-
 #: value type of the specification (5.3.1) -> its byte
-VALUE_TYPES = {"i32": 0x7F, "i64": 0x7E, "f32": 0x7D, "f64": 0x7C}
-#: type in a program -> value type; a condition is 0 or 1
-TYPES = {"f32": "f32", "f64": "f64", "bool": "i32", "i32": "i32"}
+VALUE_TYPES = {"i32": 0x7F, "i64": 0x7E, "f32": 0x7D, "f64": 0x7C, "v128": 0x7B}
 #: of a real type: integer of its width, bits of the mantissa, exponent bias
 LAYOUT = {"f32": ("i32", 23, 127), "f64": ("i64", 52, 1023)}
 
@@ -39,6 +34,30 @@ _NUMERIC = {
 }
 OPCODES |= {word: bytes([first + k]) for first, words in _NUMERIC.items() for k, word in enumerate(words.split())}
 OPCODES |= {"i32.trunc_sat_f32_s": b"\xfc\x00", "i32.trunc_sat_f64_s": b"\xfc\x02"}
+#: vectors (5.4.8): number after the byte 0xFD
+_VECTOR = {
+    10: "v128.load64_splat v128.store v128.const i8x16.shuffle",
+    17: "i32x4.splat i64x2.splat f32x4.splat f64x2.splat",
+    65: "f32x4.eq f32x4.ne f32x4.lt f32x4.gt f32x4.le f32x4.ge f64x2.eq f64x2.ne f64x2.lt f64x2.gt f64x2.le f64x2.ge",
+    77: "v128.not v128.and v128.andnot v128.or v128.xor v128.bitselect v128.any_true",
+    94: "f32x4.demote_f64x2_zero f64x2.promote_low_f32x4",
+    103: "f32x4.ceil f32x4.floor",
+    116: "f64x2.ceil f64x2.floor",
+    171: "i32x4.shl i32x4.shr_s i32x4.shr_u i32x4.add",
+    177: "i32x4.sub",
+    195: "i64x2.all_true",
+    199: "i64x2.extend_low_i32x4_s",
+    203: "i64x2.shl i64x2.shr_s i64x2.shr_u i64x2.add",
+    209: "i64x2.sub",
+    224: "f32x4.abs f32x4.neg",
+    227: "f32x4.sqrt f32x4.add f32x4.sub f32x4.mul f32x4.div f32x4.min f32x4.max",
+    236: "f64x2.abs f64x2.neg",
+    239: "f64x2.sqrt f64x2.add f64x2.sub f64x2.mul f64x2.div f64x2.min f64x2.max",
+    248: "i32x4.trunc_sat_f32x4_s",
+    250: "f32x4.convert_i32x4_s",
+    252: "i32x4.trunc_sat_f64x2_s_zero",
+    254: "f64x2.convert_low_i32x4_s",
+}
 
 
 def unsigned(number):
@@ -56,9 +75,13 @@ def signed(number):
     return bytes((low | 128,)) + signed(rest)
 
 
-#: what follows a word, as bytes
+OPCODES |= {word: b"\xfd" + unsigned(at + k) for at, words in _VECTOR.items() for k, word in enumerate(words.split())}
+OPCODES["v128.load"] = b"\xfd\0\x03"  # 3: their alignment, 8 bytes
+OPCODES |= {word: OPCODES[word] + b"\x03" for word in ("v128.load64_splat", "v128.store")}
+#: words that a number follows, and what it is in bytes
 _FOLLOWS = {
-    **dict.fromkeys(("br_if", "local.get", "local.set", "local.tee", "f64.load", "f64.store"), lambda t: unsigned(int(t))),
+    **dict.fromkeys(("br_if", "local.get", "local.set", "local.tee"), lambda t: unsigned(int(t))),
+    **dict.fromkeys(("f64.load", "f64.store", "v128.load", "v128.load64_splat", "v128.store"), lambda t: unsigned(int(t))),
     **dict.fromkeys(("i32.const", "i64.const"), lambda t: signed(int(t))),
     "f32.const": lambda t: struct.pack("<f", float(t)),
     "f64.const": lambda t: struct.pack("<d", float(t)),
@@ -78,37 +101,6 @@ def assemble(text):
         code += OPCODES[word]
         if word in _FOLLOWS:
             code += _FOLLOWS[word](next(words))
+        elif word == "i8x16.shuffle":
+            code += bytes(int(next(words)) for _ in range(16))
     return code
-
-
-def words(op, type, operand):
-    """Return the words of an operation of a program, by the types of its result and of its first operand.
-
-    The names in its record: ``t`` and ``a`` are these types, ``convert`` goes from one real type to the other. Of a real operand,
-    ``bits`` is the integer type of its width, reached from i32 by ``widen`` and left by ``narrow``; ``field`` are the ones of an
-    exponent, ``low`` and ``high`` the least and the greatest of a normal number.
-
-    Examples
-    --------
-    >>> words("lt", "bool", "f32")
-    'f32.lt'
-    """
-    names = {"t": TYPES[type], "a": TYPES[operand], "convert": "f64.promote_f32" if type == "f64" else "f32.demote_f64"}
-    if operand in LAYOUT:
-        bits, mantissa, bias = LAYOUT[operand]
-        names |= {"bits": bits, "mantissa": mantissa, "bias": bias, "field": 2 * bias + 1, "low": 1 - bias, "high": bias}
-        names |= {"widen": "i64.extend_i32_u" * (bits == "i64"), "narrow": "i32.wrap_i64" * (bits == "i64")}
-    return OPERATIONS[op].wasm.format(**names)
-
-
-@functools.cache
-def operation(op, type, operand):
-    """Return the bytes of an operation; see :func:`words`."""
-    return assemble(words(op, type, operand))
-
-
-def constant(value, type):
-    """Return the bytes that push a constant of a type of a program."""
-    if type in LAYOUT:
-        return OPCODES[f"{type}.const"] + struct.pack("<f" if type == "f32" else "<d", value)
-    return OPCODES["i32.const"] + signed(int(value))

@@ -34,7 +34,7 @@ class Operation:
         names are those of :meth:`hapticlab.compiler.engines.llvm_emit.Writer.words`.
     wasm : str
         Its words in WebAssembly's text format, which take the operands from the stack (a select its condition last); none for
-        an elementary function. The names are those of :func:`hapticlab.compiler.engines.wasm_words.words`.
+        an elementary function. The names are those of :func:`hapticlab.compiler.engines.wasm_lanes.Lanes.words_of`.
     c : str
         Its C expression, where the C of an elementary function uses it.
     derivative : tuple of callables (d, r, *operands) -> value

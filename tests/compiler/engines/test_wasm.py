@@ -16,7 +16,8 @@ import hapticlab as hl
 from hapticlab.compiler.engines import skipped_arms
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.engines.wasm_emit import emit
-from hapticlab.compiler.engines.wasm_words import OPCODES, TYPES, operation, signed, unsigned, words
+from hapticlab.compiler.engines.wasm_lanes import ONE, TWO
+from hapticlab.compiler.engines.wasm_words import OPCODES, assemble, signed, unsigned
 from hapticlab.compiler.ir.operations import ELEMENTARY, OPERATIONS
 from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder, select, sin
@@ -130,14 +131,16 @@ def golden():
 
 
 def test_node_gives_the_bits_of_golden_programs_and_of_linked_scenes():
-    linked = ((program, TICKS, paddle.inputs(TICKS), lanes_of(values, 3)) for program, paddle, values in scenes())
+    linked = ((program, TICKS, paddle.inputs(TICKS), lanes_of(values, 4)) for program, paddle, values in scenes())
     check_in_node([*golden(), *linked])
 
 
 @pytest.mark.wide
 @pytest.mark.parametrize("reals", REALS)
 def test_node_gives_the_bits_of_random_programs(monkeypatch, reals):
+    """Even numbers of lanes two at once, whatever can be skipped."""
     monkeypatch.setattr(skipped_arms, "WORTH", 2)
+    monkeypatch.setattr("in_node.at_once", lambda program: TWO)
     made = (of_seed(seed, reals) for seed in range(30))
     check_in_node([(program, TICKS, inputs, parameters) for program, inputs, parameters in made], every=3)
 
@@ -158,19 +161,28 @@ def test_numbers_are_written_as_leb128(number):
     assert read(signed(number), True) == number and read(signed(-number - 1), True) == -number - 1
 
 
-def test_words_are_the_bytes_that_wasmtimes_own_assembler_makes_of_them():
+@pytest.mark.parametrize("lanes", [ONE, TWO])
+def test_words_are_the_bytes_that_wasmtimes_own_assembler_makes_of_them(lanes):
     import wasmtime
+
+    def same(words, taken, given):
+        inside = f"{' '.join(f'local.get {k}' for k in range(len(taken)))} {words}"
+        module = bytes(wasmtime.wat2wasm(f"(module (func (param {' '.join(taken)}) (result {given}) {inside}))"))
+        assert assemble(words) + OPCODES["end"] in module, words
 
     kinds = {"R": ("f32", "f64"), "B": ("bool",), "I": ("i32",)}
     for op, record in OPERATIONS.items():
-        first, result = record.operands[1 if op == "select" else 0], record.result
+        first, result = record.operands[0], record.result
         for operand, type in ((o, t) for o in kinds[first] for t in kinds[result] if op not in ELEMENTARY):
             if first == result == "R" and (operand == type) == (op == "cast"):
                 continue  # there is no such operation
-            taken = [TYPES[operand]] * len(record.operands.replace("BRR", "RR")) + ["i32"] * (op == "select")
-            text = f"(param {' '.join(taken)}) (result {TYPES[type]}) {' '.join(f'local.get {k}' for k in range(len(taken)))}"
-            module = bytes(wasmtime.wat2wasm(f"(module (func {text} {words(op, type, operand)}))"))
-            assert operation(op, type, operand) + OPCODES["end"] in module, op
+            rest = [lanes.types[type if op == "select" else operand]] * (len(record.operands) - 1)
+            taken = [*rest, lanes.types["bool"]] if op == "select" else [lanes.types[operand], *rest]
+            same(lanes.words_of(op, type, operand), taken, lanes.types[type])
+    for type in lanes.types:
+        wide = lanes.types["f64"]
+        same(lanes.loaded[type], [wide], lanes.types[type])
+        same(lanes.stored[type], [lanes.types[type]], wide)
 
 
 def test_locals_are_used_again_and_arms_are_branches():
