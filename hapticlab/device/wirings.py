@@ -167,6 +167,14 @@ _SKETCHES = "published Hapkit sketches (hapkit.stanford.edu): PWM on D5, directi
 _LONGHORN = "sketches of the Longhorn Hapkit (A. Majewicz Fey, UT Austin, 2021): encoder on D2 and D3, bridge inputs D4 and D5"
 _SHIELD = "Adafruit AFMotor library and motor shield version 1: 74HC595 with latch D12, clock D4, data D8, output enable D7"
 _ENCODER_LEVELS = "A Pico takes at most 3.3 V on its pins: use an encoder that works with 3.3 V, or a level shifter."
+#: what a person who wires a sensor pin by pin must know of its voltage
+_LEVELS = {
+    ("pico", "QUADRATURE"): (_ENCODER_LEVELS,),
+    ("pico", "MAGNETORESISTIVE"): (
+        "A Pico takes at most 3.3 V on its pins. A KMA210 needs 5 V from VBUS in place of 3V3. Connect its OUT over 10 kOhm to "
+        "the pin, and the pin over 20 kOhm to GND.",
+    ),
+}
 _L298 = "Pull the module's jumper from ENA. Leave its own 5V terminal empty; its jumper 5V-EN stays in, for 7 to 12 V."
 _MEASURE = (
     "Measure from D5 to GND without any supply. If it is more than 11 kOhm, add 10 kOhm, so that the motor is off while the "
@@ -311,4 +319,4 @@ def built_as(board: str, wiring: Wiring) -> Build:
             return one
     words = DRIVE_WORDS[wiring.drive], SENSOR_WORDS[wiring.sensor]
     return Build(name="own", title="a wiring of your own", board=board, wiring=wiring, driver=words[0], sensor=words[1],
-                 source="chosen pin by pin")  # fmt: skip
+                 source="chosen pin by pin", notes=_LEVELS.get((board, wiring.sensor), ()))  # fmt: skip

@@ -12,8 +12,9 @@ from .still_noise import still_noise
 
 #: counts: at rest no more than this is noise, and no less than this is a motion
 NOISY, LEAST_SWEEP = 6, 50
-#: the same of an AS5048A, whose noise is about 2.7 counts of its 14 bits rms, from end to end of a second
-NOISY_FINE = 30
+#: the same of an angle sensor with more than 10 bits, from end to end of a second: of an AS5048A's 14 bits the noise is about
+#: 2.7 counts rms, and a Pico's 12 bits have some 8 counts of their own
+NOISY_FINE, COARSE = 30, 1024
 #: counts by which a sensor may leave the straight line through its neighbours
 JUMP = 20
 #: part of the sweep at either end where a handle that hits its stop is no jump of the sensor
@@ -57,7 +58,8 @@ class Readings:
 
 def most_at_rest(settings):
     """Return how many counts the reading of a resting handle may wander by, from end to end; settings may be None."""
-    return NOISY_FINE if settings is not None and settings.sensor == SENSORS["AS5048A"] else NOISY
+    fine = settings is not None and settings.sensor != SENSORS["QUADRATURE"] and settings.wrap > COARSE
+    return NOISY_FINE if fine else NOISY
 
 
 def measure_noise(paddle, person):

@@ -16,9 +16,10 @@ from .sensor_readings import JUMP, LEAST_SWEEP, REST, most_at_rest, readings
 from .stored_settings import offer, store
 
 #: until the stops are measured: counts after which a reading repeats, and metres per count of a Hapkit's pulley and sector.
-#: KMA210: 920 counts in half a turn are 12.8 um each; AS5048A: 16384 in a whole turn; encoder: illustrative
-WRAP = {"MAGNETORESISTIVE": 920, "AS5048A": 16384}
-STEP = {"MAGNETORESISTIVE": 12.8e-6, "AS5048A": 12.8e-6 * 2 * 920 / 16384, "QUADRATURE": 10e-6}
+#: KMA210: half a turn, 5 % to 95 % of 5 V, is 920 of an Uno's 10 bits, 12.8 um each, and 3724 of a Pico's 12 bits of 3.3 V
+#: behind a divider to 2/3; AS5048A: 16384 in a whole turn; encoder: illustrative
+KMA210 = {"uno": 920, "pico": 3724}
+HALF_TURN, ENCODER = 920 * 12.8e-6, 10e-6
 #: s of watching a handle that is moved from stop to stop; how often a person may correct a wire
 MOVED, TRIES = 5.0, 3
 
@@ -58,8 +59,8 @@ def check_wiring(paddle, person, ident=0):
     return _left_off(paddle, person)
 
 
-def rewired(settings, wiring):
-    """Return the settings with another wiring, unconfirmed; constants of another sensor are nominal again.
+def rewired(settings, wiring, board="uno"):
+    """Return the settings with another wiring of a board, unconfirmed; constants of another sensor are nominal again.
 
     Examples
     --------
@@ -73,8 +74,10 @@ def rewired(settings, wiring):
     fields = wiring.settings() | {"wired": 0, "checked": 0}
     if all(getattr(settings, name) == fields[name] for name in ("sensor", "sensor_pins")):
         return changed(settings, **fields)
-    step = STEP[wiring.sensor]
-    return changed(settings, **fields, date=0, metres_per_count=step, wrap=WRAP.get(wiring.sensor, settings.wrap))
+    if wiring.sensor == "QUADRATURE":
+        return changed(settings, **fields, date=0, metres_per_count=ENCODER)
+    turns, wrap = (1, 16_384) if wiring.sensor == "AS5048A" else (0.5, KMA210[board])
+    return changed(settings, **fields, date=0, metres_per_count=2 * turns * HALF_TURN / wrap, wrap=wrap)
 
 
 def check_sensor(paddle, person):
@@ -155,11 +158,11 @@ def begun(was, build, ident=0):
     """
     wiring = build.wiring
     if was is not None and (Wiring.of(was).sensor, Wiring.of(was).sensor_pins) == (wiring.sensor, wiring.sensor_pins):
-        return rewired(was, wiring)
+        return rewired(was, wiring, build.board)
     alike = {one.wiring: name for name, one in PROFILES.items() if one.wiring}
     kinds = {(BUILDS[name].wiring.sensor, BUILDS[name].wiring.drive): profile for name, profile in alike.items()}
     profile = alike.get(build.name) or kinds.get((wiring.sensor, wiring.drive), "hapkit")
-    return rewired(nominal(profile, ident=was.ident if was is not None else ident), wiring)
+    return rewired(nominal(profile, ident=was.ident if was is not None else ident), wiring, build.board)
 
 
 def _unconfirmed(paddle, person, build, ident):

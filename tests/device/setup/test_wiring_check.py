@@ -13,8 +13,9 @@ from hapticlab.device.setup import doctor_checks, stored_settings, wiring_check
 from hapticlab.device.setup.built import ask_built
 from hapticlab.device.setup.calibrate import calibrate
 from hapticlab.device.setup.person import Person
+from hapticlab.device.setup.sensor_readings import most_at_rest
 from hapticlab.device.wiring import Wiring
-from hapticlab.device.wirings import build
+from hapticlab.device.wirings import build, built_as
 from hapticlab.errors import LinkError, PaddleError
 
 YES = {"Store these settings": "yes"}
@@ -197,6 +198,16 @@ def test_a_new_paddle_begins_with_the_constants_of_its_kind(name, profile):
     new = wiring_check.begun(None, build(name), 9)
     assert (Wiring.of(new), new.ident, new.wired, new.checked) == (build(name).wiring, 9, 0, 0)
     assert new.metres_per_count == nominal(profile).metres_per_count and new.force_full == nominal(profile).force_full
+
+
+def test_a_pico_reads_the_same_half_turn_in_more_counts():
+    """A KMA210's output flies back by 0.9 * 5 V, of which a divider to 2/3 leaves 3 V of the 3.3 V in 12 bits."""
+    built = built_as("pico", Wiring("MAGNETORESISTIVE", "TWO_INPUTS", (14, 15), (26,), 20_000))
+    new = wiring_check.begun(None, built)
+    assert new.wrap == round(0.9 * 5 * 2 / 3 / 3.3 * 4096)
+    assert new.metres_per_count * new.wrap == pytest.approx(920 * 12.8e-6)
+    assert "VBUS in place of 3V3" in " ".join(built.remarks())
+    assert most_at_rest(new) > most_at_rest(HAPKIT)  # the same noise is more counts
 
 
 def test_another_driver_keeps_the_constants_of_the_sensor():
