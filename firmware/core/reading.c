@@ -52,7 +52,9 @@ void hl_handle_read(hl_core *core, uint16_t periods)
     /* the reading before a doubted one may be off by a jump; not so twice in a row */
     const hl_way slack = doubted && !t->strained ? most->jump : 0;
     const hl_way off = (hl_way)(way - expected);
-    const uint8_t fast = is_beyond(way, (hl_way)(furthest + slack)), lost = angle && is_beyond(off, (hl_way)(6 * most->jump));
+    /* too fast, and not as the handle went before: readings that are wrong again and again */
+    const uint8_t fast = is_beyond(way, (hl_way)(furthest + slack)), jumps = fast ? 2 : 6;
+    const uint8_t lost = angle && is_beyond(off, (hl_way)(jumps * most->jump));
     if (angle && !doubted && (fast || lost || (t->sure && is_beyond(off, most->jump)))) {
         t->doubted = n;
         t->ahead = core->state == HL_STATE_RUN && core->force_limit > 0.0f ? expected : 0;

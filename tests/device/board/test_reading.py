@@ -145,6 +145,20 @@ def test_a_jump_that_stays_is_over_speed():
     assert fault_name(host.state()["fault"]) == "OVER_SPEED" and not host.has("HOMED")
 
 
+@pytest.mark.parametrize("T", [1e-3, 2e-3])
+def test_a_contact_that_fails_in_a_tenth_of_the_readings_ends_the_run_and_loses_the_position(T):
+    """The run ended, but the board took the position for known after it, a turn away: in 30 of 150 runs at 2 ms."""
+    lasted = []
+    for seed in range(20):
+        host, random = Host(speed_max=2.0, **MAGNET).running(spring(T=T), _0=1.0), np.random.default_rng(seed)
+        begun = host.t
+        while state_name(host.state()["state"]) == "RUN" and host.t - begun < 3:
+            host.tick(int(random.integers(0, WRAP)) if random.random() < 0.1 else 0)
+        lasted.append(host.t - begun)
+        assert fault_name(host.state()["fault"]) == "OVER_SPEED" and not host.has("HOMED")
+    assert T > 1e-3 or (np.median(lasted) < 0.25 and np.quantile(lasted, 0.9) < 0.5)
+
+
 # ---------------------------------------------------------------- frozen
 
 
