@@ -88,7 +88,7 @@ def wall_for_board(paddle: SimulatedPaddle, *, K: float, board: str | Board = "u
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=2e-3, counts_per_metre=1e5)
     >>> print(hl.laws.wall_for_board(paddle, K=500).name)
-    half a sample, dead-beat pairs at crossings, to 5 %
+    dead-beat pairs, crossings to 5 %
     """
     # what is wrong with the constants is said once, as itself
     WallModel.of(paddle, K=K, **{name: options[name] for name in ("B", "hand") if name in options})

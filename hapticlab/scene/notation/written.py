@@ -16,7 +16,7 @@ CONDITIONS = (Relational, BooleanFunction, BooleanAtom)
 #: what a scene, a record of a run (hapticlab/base/telemetry.py) and the loop around a scene call their own
 RESERVED = frozenset(
     "n t T x v F x_true v_true F_applied x_switch tick intent noise unlocated overlap "
-    "delay channels units paddle scene parameters fault saturated gap overrun every changes columns save load "
+    "delay sensor_delay channels units paddle scene parameters fault saturated gap overrun every changes columns save load "
     "to_csv to_pandas to_xarray".split()
 )
 

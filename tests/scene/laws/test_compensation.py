@@ -63,9 +63,9 @@ def test_it_takes_a_chosen_velocity_once():
     assert hl.laws.damping_compensation(wall, b=DAMPING, velocity=estimate).eom == wall.eom
 
 
-@pytest.mark.parametrize(("sign", "fits_at"), [("smooth", 1.25e-3), ("dead_zone", 1e-3)])
-def test_it_runs_in_the_firmware_core_and_fits_the_uno(sign, fits_at):
-    """The smooth sign is a square root and a division dearer, which here beside a wall and a filter is too much for 1 kHz."""
+@pytest.mark.parametrize(("sign", "least"), [("smooth", 0.87e-3), ("dead_zone", 0.8e-3)])
+def test_it_runs_in_the_firmware_core_and_fits_the_uno(sign, least):
+    """The smooth sign is a square root and a division dearer, some 0.1 ms; beside a wall and a filter both fit 1 kHz."""
     scene = hl.laws.damping_compensation(
         hl.wall("backward_difference"), b=DAMPING, coulomb=COULOMB, speed=WIDTH, sign=sign,
         velocity=hl.velocity.filtered(tau="2 ms"),
@@ -74,8 +74,8 @@ def test_it_runs_in_the_firmware_core_and_fits_the_uno(sign, fits_at):
     path = (0.01 + 0.003 * np.sin(0.05 * np.arange(300))).astype(np.float32)[:, None]
     there, here = (load(program, engine).run(300, path).outputs for engine in ("vm", "interpreter"))
     np.testing.assert_array_equal(there, here)
-    assert cost(program).fits == (fits_at == T)
-    assert cost(program).T_needed() <= fits_at
+    assert cost(program).fits
+    assert least < cost(program).T_needed() <= T
 
 
 @pytest.mark.parametrize(
