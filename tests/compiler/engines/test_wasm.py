@@ -4,6 +4,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,13 +16,15 @@ from test_golden import GOLDEN, array, program_of
 import hapticlab as hl
 from hapticlab.compiler.engines import skipped_arms
 from hapticlab.compiler.engines.engine import load
-from hapticlab.compiler.engines.wasm_emit import emit
+from hapticlab.compiler.engines.wasm import Wasm, _Instance
+from hapticlab.compiler.engines.wasm_emit import at_once, emit
 from hapticlab.compiler.engines.wasm_lanes import ONE, TWO
 from hapticlab.compiler.engines.wasm_words import OPCODES, assemble, signed, unsigned
 from hapticlab.compiler.ir.operations import ELEMENTARY, OPERATIONS
 from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder, select, sin
 from hapticlab.device.simulated.closed_loop import link
+from hapticlab.errors import ProgramError
 
 pytest.importorskip("wasmtime", reason="needs wasmtime, or llvmlite is missing on purpose and wasmtime with it")
 pytestmark = pytest.mark.machine_code
@@ -267,10 +270,51 @@ def test_one_tick_at_a_time_is_the_run_of_many():
     assert_same_bits(np.array(found), whole.outputs[..., 0])
 
 
-def test_a_process_ends_in_silence():
+def test_a_process_of_little_memory_runs_it_and_ends_in_silence():
+    """As in a sandbox of graded work; 1 GiB of addresses more than the package needs by itself, where they can be limited."""
     code = (
-        "import hapticlab as hl; from hapticlab.compiler.engines.engine import load; p = hl.compile(hl.wall()(k=1), T=1e-3); "
-        "print(load(p, 'wasm').run(2, [0.0, 1.0]).outputs.size)"
+        "import sys, hapticlab as hl, wasmtime; from hapticlab.compiler.engines.engine import load\n"
+        "p = hl.compile(hl.wall()(k=1, x_o=0), T=1e-3)\n"
+        "if sys.platform == 'linux':\n"
+        "    import resource; used = int(open('/proc/self/statm').read().split()[0]) * resource.getpagesize()\n"
+        "    resource.setrlimit(resource.RLIMIT_AS, (used + 2**30,) * 2)\n"
+        "print(load(p, 'wasm').run(2, [0.0, 1.0]).outputs[-1, 0, 0])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip().isdigit() and not done.stderr
+    assert done.stdout.strip() == "1.0" and not done.stderr
+
+
+def test_what_its_memory_does_not_hold_is_said():
+    with pytest.raises(ProgramError, match=r"a run needs 8 GiB; .*at most 4 GiB, .*run fewer lanes, .*interpreter"):
+        _Instance(load(random_program(3), "wasm")._kernel._host(ONE)._module)._arrays((2**30, 0, 0, 0))
+
+
+def test_a_library_is_called_with_the_arrays_where_they_are(monkeypatch):
+    """In place of Emscripten's dlopen: the file must be the module, and machine code runs on the addresses it is given."""
+    pytest.importorskip("llvmlite")
+    program = random_program(5)
+    inputs, parameters = drive(program, 5, TICKS, 3)
+    machine, opened = load(program, "llvm")._kernel._function(1), []
+
+    class Opened:
+        def __init__(self, path):
+            opened.append(Path(path).read_bytes())
+            self.run = lambda ticks, every, stride, *rest: machine(ticks, every, 0, stride // 8, stride // 8, *rest)
+
+    monkeypatch.setattr("hapticlab.compiler.engines.wasm.is_in_browser", lambda: True)
+    monkeypatch.setattr("ctypes.CDLL", Opened)
+    library = Wasm(program)
+    assert_whole_and_resumed(lambda *given: library.run(*given), program, inputs, parameters)
+    assert opened == [emit(program), emit(program, at_once(program))][: len(opened)]
+    row, states = inputs[0].copy(), library.run(1, inputs[:1], parameters[:, :1])[1]
+    expected = load(program, "interpreter").run(1, row[None], parameters[:, 0], states)
+    given = row, parameters[:, 0].copy(), states[:, 0].copy(), np.empty(len(program.outputs))
+    library.bound(*given)()
+    assert_same_bits(given[3], expected.outputs[0, :, 0])
+    assert_same_bits(given[2], expected.states[:, 0])
+
+
+def test_a_module_that_its_host_refuses_is_said(monkeypatch):
+    monkeypatch.setattr("hapticlab.compiler.engines.wasm.emit", lambda *given: b"no module")
+    with pytest.raises(ProgramError, match='(?s)random4: wasmtime refuses it: .*use engine="interpreter"'):
+        Wasm(random_program(4)).run(1, *drive(random_program(4), 4, 1, 1))
