@@ -144,7 +144,7 @@ def test_the_rest_of_a_step_and_a_frame_are_what_the_table_says():
 
 
 @pytest.mark.skipif(bool(pico_emulator.missing()), reason=str(pico_emulator.missing()))
-@pytest.mark.wide
+@pytest.mark.slow  # a part of the table always runs: test_the_committed_table_is_what_is_measured
 def test_the_rest_of_a_step_on_the_pico_is_what_the_table_says():
     found, committed = measure_pico_step(), tables()["pico"]
     assert found["step"][0] == pytest.approx(committed["step"][0], rel=0.05)

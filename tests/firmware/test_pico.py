@@ -30,7 +30,7 @@ def again(loop, **options):
 
 
 @pytest.mark.parametrize("name", PICO_FAULTS)
-@pytest.mark.always("host silent", "AS5048A's parity")
+@pytest.mark.always("host silent")
 def test_the_motor_is_off_in_time(name, record_property):
     fault = PICO_FAULTS[name]
     taken, log = measure(fault)

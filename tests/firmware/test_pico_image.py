@@ -73,6 +73,6 @@ def test_telemetry_of_every_tick_equals_the_program_in_every_bit(make):
 
 @needs_emulator
 @pytest.mark.parametrize("sensor", SENSORS)
-@pytest.mark.always("QUADRATURE")
+@pytest.mark.always("MAGNETORESISTIVE")
 def test_every_sensor_gives_positions_of_which_the_force_is_the_scene(sensor):
     same_bits(wall, 500e-6, 150, sensor)

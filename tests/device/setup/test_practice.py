@@ -15,7 +15,7 @@ def test_a_question_that_the_simulated_person_does_not_know_is_told():
         person.ask("Move the handle slowly to the left stop and press Enter")
 
 
-@pytest.mark.always("loose wire-*", "dead band-*")
+@pytest.mark.always("dead band-*")
 @pytest.mark.parametrize(
     ("trouble", "words"),
     [
