@@ -20,6 +20,8 @@ from .stored_settings import offer, store
 #: behind a divider to 2/3; AS5048A: 16384 in a whole turn; encoder: illustrative
 KMA210 = {"uno": 920, "pico": 3724}
 HALF_TURN, ENCODER = 920 * 12.8e-6, 10e-6
+#: of an encoder, which does not repeat: a board takes a sensor of more counts for one with noise
+NO_WRAP = 1024
 #: s of watching a handle that is moved from stop to stop; how often a person may correct a wire
 MOVED, TRIES = 5.0, 3
 
@@ -75,7 +77,7 @@ def rewired(settings, wiring, board="uno"):
     if all(getattr(settings, name) == fields[name] for name in ("sensor", "sensor_pins")):
         return changed(settings, **fields)
     if wiring.sensor == "QUADRATURE":
-        return changed(settings, **fields, date=0, metres_per_count=ENCODER)
+        return changed(settings, **fields, date=0, metres_per_count=ENCODER, wrap=NO_WRAP)
     turns, wrap = (1, 16_384) if wiring.sensor == "AS5048A" else (0.5, KMA210[board])
     return changed(settings, **fields, date=0, metres_per_count=2 * turns * HALF_TURN / wrap, wrap=wrap)
 

@@ -183,6 +183,15 @@ def test_a_frozen_reading_drives_no_force_for_longer_than_1_2_s(flicker):
     assert host.faults[0].fields["value"] == pytest.approx(1.32)
 
 
+def test_a_frozen_as5048a_is_found_in_its_own_noise():
+    """Noise of 2.7 of its 16384 counts, its data sheet's, was taken for motion: the force stayed for ever."""
+    for seed in range(5):
+        noise = np.random.default_rng(seed).normal(0.4, 2.73, 3000).round().astype(int)
+        host = Host(sensor=SENSORS["AS5048A"], wrap=16384, metres_per_count=12.8e-6 * 2 * 920 / 16384).running(fixed(1.32))
+        frozen(host, lambda k, noise=noise: int(noise[k]), ticks=len(noise))
+        assert fault_name(host.state()["fault"]) == "FROZEN"
+
+
 def test_a_live_reading_gets_its_force_back_at_once():
     host = Host().running(fixed(1.32))
     duties = frozen(host, lambda k: 2 if k >= 1100 else 0, ticks=1150)

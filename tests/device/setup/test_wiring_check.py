@@ -235,3 +235,9 @@ def test_a_wiring_that_the_board_cannot_do_is_never_sent(monkeypatch):
     impossible = changed(HAPKIT, motor_pins=pin_word(9, 8), wired=0, checked=0)
     with pytest.raises(PaddleError, match="PWM on D9: an Uno has PWM on D3, D5, D6, D11. Move this wire to one of them."):
         stored_settings.store(paddle, impossible)
+
+
+def test_an_encoder_has_no_wrap_of_the_sensor_before():
+    """From a wrap a board knows how much noise is no motion; of an encoder every count is one."""
+    longhorn = wiring_check.rewired(nominal("hapkit_as5048a"), build("longhorn_d11").wiring)
+    assert longhorn.wrap == nominal("longhorn").wrap == 1024
