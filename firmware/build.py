@@ -1,5 +1,7 @@
 """Build a board's image: ``python firmware/build.py uno`` writes ``firmware/prebuilt/uno.hex``, ``pico`` its ``pico.uf2``.
 
+``web`` writes ``web.wasm``: the host's board for a page, which asks nothing of who loads it.
+
 The compilers are pinned, so that the same sources give the same bytes anywhere: a test builds the images and compares.
 ``python firmware/build.py uno FOLDER`` writes ``uno.hex`` and ``uno.elf`` there instead.
 """
@@ -12,6 +14,7 @@ from importlib import metadata
 from pathlib import Path
 
 from hapticlab.compiler.boards.board_records import BOARDS, Drive
+from hapticlab.compiler.engines import toolchain
 from hapticlab.device.setup.drive.uf2_blocks import PAGE, as_uf2
 
 FIRMWARE = Path(__file__).resolve().parent
@@ -35,6 +38,8 @@ SIZES = dict.fromkeys(("core/handle.c", "core/wire.c", "boards/uno/main.c"), SMA
 SIZES |= {f"boards/uno/{name}.c": SMALLEST for name in ("store", "wiring")}
 SIZES |= {f"core/{name}.c": SMALLEST for name in ("heat", "idle", "link", "message", "place", "store", "verify")}
 LINKING = ("-mrelax", "-Wl,--gc-sections")  # short calls where they reach
+#: for a page: no chip, and the board of this computer
+WEB = "web"
 BUILT = {name: board for name, board in BOARDS.items() if board.flashing}
 
 
@@ -125,6 +130,19 @@ def build_uf2(board, folder):
     return elf, image
 
 
+def build_web(folder):
+    """Build the host's board as one WebAssembly module without an import; return its path."""
+    pinned(CLANG_PACKAGE, CLANG_VERSION)
+    image, target = Path(folder).resolve() / f"{WEB}.wasm", toolchain.TARGETS["emscripten-wasm32-32"]
+    compiler = [sys.executable, "-m", "ziglang", "cc", "-target", target, *CLANG_FLAGS[-4:]]
+    files = (*toolchain.sources(FIRMWARE), *sources(f"boards/{WEB}"))
+    with tempfile.TemporaryDirectory() as temporary:
+        for command in toolchain.wasm_commands(compiler, FIRMWARE, 16, image, files=files, linking=["--no-entry"]):
+            subprocess.run(command, cwd=temporary, check=True)
+    image.chmod(0o644)  # nobody runs it by its name
+    return image
+
+
 def segments(elf):
     """Return what an ELF file for ARM puts into memory: address in flash, bytes, address in memory, size there."""
     data, found = Path(elf).read_bytes(), []
@@ -183,9 +201,13 @@ def sizes(elf):
 
 
 def main(arguments):
-    if not 1 <= len(arguments) <= 2 or arguments[0] not in BUILT:
-        raise SystemExit(f"usage: python firmware/build.py {{{','.join(BUILT)}}} [FOLDER]")
+    if not 1 <= len(arguments) <= 2 or arguments[0] not in (*BUILT, WEB):
+        raise SystemExit(f"usage: python firmware/build.py {{{','.join([*BUILT, WEB])}}} [FOLDER]")
     board = arguments[0]
+    if board == WEB:
+        image = build_web(arguments[1] if len(arguments) == 2 else FIRMWARE / "prebuilt")
+        print(f"{image}: {image.stat().st_size} bytes")
+        return
     with tempfile.TemporaryDirectory() as temporary:
         if len(arguments) == 2:
             Path(arguments[1]).mkdir(parents=True, exist_ok=True)

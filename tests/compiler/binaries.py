@@ -1,4 +1,4 @@
-"""Read libraries of Linux, Windows and macOS by their published formats, no matter which computer this is."""
+"""Read libraries of Linux, Windows, macOS and Pyodide by their published formats, no matter which computer this is."""
 
 from struct import unpack_from
 
@@ -11,6 +11,9 @@ def target(data):
     """Return which system and machine a library is for, as linux-x86_64."""
     if data[:4] == b"\x7fELF":
         return f"linux-{ELF_MACHINES[unpack_from('<H', data, 18)[0]]}"
+    if data[:4] == b"\0asm":
+        assert data[10:19] == b"\x08dylink.0", "a library for Pyodide says first what it needs"
+        return "emscripten-wasm32-32"
     if data[:2] == b"MZ":
         return f"windows-{PE_MACHINES[unpack_from('<H', data, _pe_header(data) + 4)[0]]}"
     assert unpack_from("<I", data)[0] == 0xFEEDFACF, data[:4]
@@ -19,7 +22,8 @@ def target(data):
 
 def exports(data):
     """Return the names that a library defines for others."""
-    return {"linux": _elf_exports, "windows": _pe_exports, "macos": _mach_o_exports}[target(data).split("-")[0]](data)
+    readers = {"linux": _elf_exports, "windows": _pe_exports, "macos": _mach_o_exports, "emscripten": _wasm_exports}
+    return readers[target(data).split("-")[0]](data)
 
 
 def elf_sections(data):
@@ -81,4 +85,29 @@ def _mach_o_exports(data):
         name, kind = unpack_from("<IB", data, symbols + 16 * k)
         if kind & 0x0F == 0x0F:  # N_SECT | N_EXT
             found.add(_text(data, strings + name).removeprefix("_"))
+    return found
+
+
+def _leb(data, at):
+    """Return an unsigned LEB128 number and where it ends."""
+    value = shift = 0
+    while True:
+        value |= (data[at] & 127) << shift
+        at, shift = at + 1, shift + 7
+        if data[at - 1] < 128:
+            return value, at
+
+
+def _wasm_exports(data):
+    at, found = 8, set()
+    while at < len(data):
+        kind, (size, at) = data[at], _leb(data, at + 1)
+        end = at + size
+        if kind == 7:
+            number, at = _leb(data, at)
+            for _ in range(number):
+                length, at = _leb(data, at)
+                found.add(data[at : at + length].decode())
+                _, at = _leb(data, at + length + 1)
+        at = end
     return found

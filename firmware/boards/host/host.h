@@ -6,6 +6,8 @@
 
 #if defined(_WIN32)
 #define HL_EXPORT __declspec(dllexport)
+#elif defined(__wasm__)
+#define HL_EXPORT __attribute__((visibility("default")))
 #else
 #define HL_EXPORT
 #endif

@@ -1,7 +1,7 @@
 """The firmware as a library of this computer: the code of a board, at the speed of a PC.
 
-It comes with the installed package, made for this computer or for six kinds of it. In a checkout, and elsewhere, it is
-built on first use by the system's C compiler or by ziglang's (PyPI), and kept in the user's cache.
+It comes with the installed package, made for this computer, or for six kinds of it and for Pyodide. In a checkout, and
+elsewhere, it is built on first use by the system's C compiler or by ziglang's (PyPI), and kept in the user's cache.
 """
 
 import contextlib
@@ -18,6 +18,8 @@ from . import toolchain
 PACKAGE = Path(__file__).resolve().parents[2]
 INSTEAD = 'engine="interpreter" runs without it, and hl.SimulatedPaddle replaces sim://'
 CURE = f"install a C compiler, or do: pip install ziglang; {INSTEAD}"
+if sys.platform == "emscripten":  # Pyodide, in a browser: nothing can be built there
+    CURE = f"use the wheel for every target, which has it ready; {INSTEAD}"
 
 
 @functools.cache

@@ -28,7 +28,10 @@ TARGETS = {
     "windows-aarch64": "aarch64-windows-gnu",
     "macos-x86_64": "x86_64-macos.11.0-none",
     "macos-aarch64": "aarch64-macos.11.0-none",
+    "emscripten-wasm32-32": "wasm32-wasi",  # Python in a browser: Pyodide
 }
+#: how objects of WebAssembly become what Pyodide opens as a library; what it names and lacks, Pyodide has
+SIDE_MODULE = ("-shared", "--experimental-pic", "--import-undefined", "--export=hl_sources")
 
 
 class CompileError(Exception):
@@ -103,6 +106,16 @@ def build_command(compiler, firmware, word_bits, output, *flags, files):
     return [*compiler, *FLAGS, *flags, f"-DHL_WORD_BITS={word_bits}", *includes, *paths, "-o", str(output), *math]
 
 
+def wasm_commands(compiler, firmware, word_bits, output, *flags, files, linking):
+    """Return the commands that make a WebAssembly module: ziglang's compiler takes one file at a time, its linker all."""
+    includes = [f"-I{firmware / name}" for name in INCLUDE_FOLDERS]
+    fixed = [*compiler, *FLAGS, *flags, f"-DHL_WORD_BITS={word_bits}", *includes]
+    objects = [f"{k}_{word_bits}.o" for k in range(len(files))]
+    compiling = [[*fixed, "-c", str(firmware / f), "-o", made] for f, made in zip(files, objects, strict=True)]
+    linker = [*compiler[: compiler.index("cc")], "wasm-ld"]
+    return [*compiling, [*linker, *linking, "-s", "--export-dynamic", *objects, "-o", str(output)]]
+
+
 def build_library(firmware, folder, target, word_bits, *flags, tried=None):
     """Compile the library of a target into a folder, stamped with its sources, and return its path.
 
@@ -118,13 +131,26 @@ def build_library(firmware, folder, target, word_bits, *flags, tried=None):
     mark = Path(folder, f"stamp{word_bits}.c").resolve()
     text = stamp(firmware, word_bits, *flags).decode()
     mark.write_text(f'extern const char hl_sources[];\nconst char hl_sources[] = "{text}";\n', encoding="ascii")
-    kind = ("-shared", "-s", *(() if target.startswith("windows") else ("-fPIC",)))
+    position = () if target.startswith("windows") else ("-fPIC",)
     for compiler in compilers(target) if tried is None else tried:
+        given = (compiler, firmware, word_bits, name, *position, *flags)
         files = (*sources(firmware), mark)
-        command = build_command(compiler, firmware, word_bits, name, *kind, *flags, files=files)
+        if target.startswith("emscripten"):
+            commands = wasm_commands(*given, files=files, linking=SIDE_MODULE)
+        else:
+            commands = [build_command(*given, "-shared", "-s", files=files)]
+        failed = run_in_turn(commands, folder)
+        if failed is None:
+            return Path(folder, name)
+        said.append(failed)
+    raise CompileError("\n".join(said) or f"no C compiler for {target}: found no cc, gcc, clang or ziglang")
+
+
+def run_in_turn(commands, folder):
+    """Run the commands in a folder; return the one that failed with what it said, or None."""
+    for command in commands:
         # in the folder: a library for macOS remembers the path it was linked as, which is to be the same everywhere
         done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
-        if done.returncode == 0:
-            return Path(folder, name)
-        said.append(f"{' '.join(command)}\n{done.stderr}")
-    raise CompileError("\n".join(said) or f"no C compiler for {target}: found no cc, gcc, clang or ziglang")
+        if done.returncode:
+            return f"{' '.join(command)}\n{done.stderr}"
+    return None

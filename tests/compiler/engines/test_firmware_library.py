@@ -235,7 +235,7 @@ def test_no_multiplication_is_fused_with_an_addition(tmp_path):
     assert fused(made["-ffp-contract=fast"]) > 20
 
 
-@pytest.mark.parametrize("name", ["linux-aarch64", "macos-x86_64", "macos-aarch64"])
+@pytest.mark.parametrize("name", ["linux-aarch64", "macos-x86_64", "macos-aarch64", "emscripten-wasm32-32"])
 @pytest.mark.wide
 def test_ziglang_compiles_for_another_computer(name, tmp_path):
     made = toolchain.build_library(firmware_library.firmware_folder(), tmp_path, name, 16)
