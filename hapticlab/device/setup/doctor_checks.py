@@ -97,7 +97,8 @@ def _reset_cause(number):
 def _pending(paddle):
     """Return a Check of a fault that stood when the doctor came, if there was one."""
     faults = [notice for notice in paddle.notices if "fault was pending" in notice]
-    return [Check("fault", "attention", fault, "docs/faults.md has a section for each fault") for fault in faults]
+    cure = "find its cause before the motor moves again; docs/faults.md in hapticlab's source lists causes of each fault"
+    return [Check("fault", "attention", fault, cure) for fault in faults]
 
 
 def settings(paddle):
