@@ -8,6 +8,7 @@ import hapticlab as hl
 from hapticlab import T, n, t, v, x
 from hapticlab.analysis.accuracy.continuous_handle import DEGREE, coefficients, driven, without_samples
 from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.engines.table import ENGINES
 from hapticlab.errors import ProgramError
 
 
@@ -47,7 +48,7 @@ def test_a_driven_program_sees_the_handle_move_within_the_period():
     assert np.allclose(load(program).run(11, inputs).outputs[:, 0, 0], (h * k) ** 3 / 3, rtol=1e-14)
 
 
-@pytest.mark.parametrize("engine", ["interpreter", "llvm"])
+@pytest.mark.parametrize("engine", [name for name, record in ENGINES.items() if record.automatic and record.is_here()])
 def test_one_tick_on_arrays_is_a_tick_of_a_run(engine):
     z = hl.coordinate("z", unit="m")
     m, K, b = hl.parameters("m K b", units="kg N/m N*s/m", values=(0.08, 310, 0.6))

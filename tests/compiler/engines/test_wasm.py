@@ -1,5 +1,6 @@
 """WebAssembly gives the interpreter's bits: in wasmtime and in node, fresh and resumed, lane by lane."""
 
+import functools
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -22,7 +23,7 @@ from hapticlab.compiler.engines.wasm_lanes import ONE, TWO
 from hapticlab.compiler.engines.wasm_words import OPCODES, assemble, signed, unsigned
 from hapticlab.compiler.ir.operations import ELEMENTARY, OPERATIONS
 from hapticlab.compiler.ir.program import Block, Channel, Program
-from hapticlab.compiler.ir.trace import Builder, select, sin
+from hapticlab.compiler.ir.trace import Builder, select
 from hapticlab.device.simulated.closed_loop import link
 from hapticlab.errors import ProgramError
 
@@ -69,19 +70,21 @@ def test_a_random_program_gives_the_interpreters_bits(monkeypatch, seed, reals):
     assert_whole_and_resumed(engine.run, program, inputs, parameters)
 
 
+@functools.cache
 def scenes():
-    """Yield linked programs of scenes, with the values of their parameters: walls, a mechanism, taylor, an exact method."""
+    """Return linked programs of scenes, with the values of their parameters: walls, a mechanism, taylor, an exact method."""
     k, x_o = hl.parameters("k x_o", units="N/m m", values=(150, 0.01))
     wall = hl.Scene(force=hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o)))
     plain = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(push=2.0))
     noisy = hl.SimulatedPaddle.from_profile("hapkit", coulomb=0.03, noise=1e-6, hand=hl.Hand("pinch", push=1.0))
-    library, exact = hl.library, {"method": "exact", "live": ()}
+    made, library, exact = [], hl.library, {"method": "exact", "live": ()}
     for paddle, scene, options in (
         (plain, wall, {}), (noisy, wall, {}), (plain, library.four_bar(), {}), (plain, library.two_masses(), exact),
         (plain, library.ball_on_the_paddle(), {"method": "taylor", "dtype": "float64"}),
     ):  # fmt: skip
         program = paddle.program(scene, **options)
-        yield link(program, paddle), paddle, (*program.values, *paddle.plant_values(0.0, 0.1))
+        made.append((link(program, paddle), paddle, (*program.values, *paddle.plant_values(0.0, 0.1))))
+    return made
 
 
 def lanes_of(values, lanes):
@@ -249,25 +252,6 @@ def test_threads_share_nothing():
     for result in results:
         assert_same_bits(result.outputs, reference.outputs)
         assert_same_bits(result.states, reference.states)
-
-
-def test_one_tick_at_a_time_is_the_run_of_many():
-    b = Builder("f64")
-    x, s = b.leaf("input", 0, "f64"), b.leaf("state", 0, "f64")
-    tick = b.block([sin(s) + x], [s + x])
-    b = Builder("f64")
-    init = b.block((), [b.leaf("input", 0, "f64")])
-    real = Channel("x", "1", "f64")
-    program = Program("sum", (real,), (), (real,), (real,), init, tick, 1e-3)
-    given = np.random.default_rng(0).normal(size=(20, 1))
-    whole = load(program, "wasm").run(20, given)
-    inputs, states, outputs, once = load(program, "wasm").once()
-    states[0], found = given[0, 0], []
-    for row in given:
-        inputs[:] = row
-        once()
-        found.append(outputs.copy())
-    assert_same_bits(np.array(found), whole.outputs[..., 0])
 
 
 def test_a_process_of_little_memory_runs_it_and_ends_in_silence():
