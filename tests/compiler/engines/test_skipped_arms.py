@@ -100,6 +100,7 @@ def test_what_lazy_evaluation_needs_is_computed_in_an_order_that_can_be(monkeypa
     assert most > 0 or not arms(items)
 
 
+@pytest.mark.machine_code
 @pytest.mark.parametrize("seed", range(16))
 @pytest.mark.parametrize("reals", [("f64",), ("f32", "f64")])
 @pytest.mark.always("reals0-0", "reals0-8", "reals1-5", "reals1-12")
@@ -165,6 +166,7 @@ def test_what_is_needed_anyway_and_what_is_little_is_not_skipped():
         assert "arm" not in emit(program) and "arm" not in emit(program, lanes=8)
 
 
+@pytest.mark.machine_code
 @pytest.mark.wide
 def test_deep_nests_of_arms_compile():
     def body(x, y):
@@ -180,6 +182,7 @@ def test_deep_nests_of_arms_compile():
     assert len(arms(arranged(program))) == skipped_arms.DEEPEST
 
 
+@pytest.mark.machine_code
 @pytest.mark.parametrize("needed", [(), (3,), (0, 15), tuple(range(16))])
 def test_an_arm_that_any_lane_needs_is_computed_for_all(needed):
     b = Builder("f64")
