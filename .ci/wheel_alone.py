@@ -5,7 +5,9 @@ import pathlib
 import sys
 
 import hapticlab
+from hapticlab.cli.options import PAGES
 from hapticlab.compiler.engines import engine, firmware_library
+from hapticlab.device.wirings import BUILDS
 
 package = pathlib.Path(hapticlab.__file__).parent
 assert "site-packages" in str(package), package
@@ -15,6 +17,9 @@ for image in ("uno.hex", "pico.uf2"):
 assert (package / "examples" / "mass_on_coupler.py").is_file()
 assert not (package.parent / "tests").exists(), "the wheel holds tests"
 assert len(list((package / "labs").glob("[0-9][0-9]_*/[0-9][0-9]_*.ipynb"))) == 11, "labs are missing in the wheel"
+for page in PAGES.values():
+    assert (package / "docs" / page).is_file(), f"no {page} in the wheel"
+assert len(list((package / "docs" / "images" / "wiring").glob("*.svg"))) == len(BUILDS), "drawings are missing in the wheel"
 assert not list(package.rglob("solution*")), "the wheel holds solutions"
 assert (package / "grading" / "pages" / "pages.css").is_file()
 assert {"view.js", "view.css"} <= {file.name for file in (package / "widgets" / "browser").iterdir()}

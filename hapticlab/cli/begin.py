@@ -11,7 +11,7 @@ from .exits import USAGE, fitted
 GROUPS = {
     "Look and learn": ("demo", "labs"),
     "Run a scene of your own": ("run", "tradeoff"),
-    "With a paddle": ("ports", "doctor", "flash", "calibrate", "bench"),
+    "With a paddle": ("guide", "ports", "doctor", "flash", "calibrate", "bench"),
     "With a class": ("assign", "grade"),
 }
 BEGIN = """hapticlab: from an equation of motion to a felt virtual wall.

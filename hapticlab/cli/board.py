@@ -124,7 +124,12 @@ def bench(parser, options):
         with connect(options.port) as paddle:
             kept = restorable(kept, paddle.settings)
             return int(not offer(paddle, person, kept, [str(kept)]))
-    _agree(options, person, "The motor will pull the handle by 0.4 N, and by up to 2 N in a last step that asks again.")
+    _agree(
+        options,
+        person,
+        "The motor will pull the handle by 0.4 N, and by up to 2 N in a last step that asks again. "
+        "Before you go on, read what nothing switches off: `hapticlab guide safety --open`.",
+    )
     with connect(options.port) as paddle:
         _tell_notices(paddle)
         report = first_power_up(paddle, PractisingOwner(paddle) if simulated else person, tell=print)

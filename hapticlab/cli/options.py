@@ -18,6 +18,8 @@ from .begin import Command, Parser, lab_number
 TARGETS = ("pc", *(name for name, given in BOARDS.items() if given.hz))
 STEPS = ("wiring", "stops", "sensor", "sign", "force")
 TROUBLES = ("motor wires", "wrong wiring", "loose wire", "sensor direction", "dead band")
+#: name -> page of docs/ that comes with the package
+PAGES = {"owner": "owners_guide.md", "safety": "SAFETY.md", "faults": "faults.md", "card": "bring_up_card.md"}
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
 LEVELS = ("auto", "namespaces", "user", "landlock", "none")
 #: of `hapticlab grade --memory` [MiB]: 16 TiB; systems take no more for a limit, and end each process where they are given more
@@ -39,6 +41,7 @@ def parser():
     for one in (_add_run(commands, shared), _add_tradeoff(commands, shared)):
         one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     _add_board_commands(commands, shared)
+    _add_guide(commands)
     made.commands = commands.choices
     return made
 
@@ -187,6 +190,16 @@ def _add_board_commands(commands, shared):
     made["bench"].add_argument("--out", metavar="FILE", default="hapticlab-bench", help=words)
     words = "try nothing, but store the settings that this report has, if you agree"
     made["bench"].add_argument("--restore", metavar="FILE.json", help=words)
+
+
+def _add_guide(commands):
+    text = "say where a page for owners of a paddle is: owner, safety, faults, or the card of the first power-up"
+    made = _add_command(commands, "cli.guide.guide", text)
+    made.add_argument(
+        "page", nargs="?", choices=PAGES, default="owner", metavar="PAGE", help=f"{', '.join(PAGES)} (default: owner)"
+    )
+    made.add_argument("--open", action="store_true", help="also open it")
+    made.set_defaults(pages=PAGES)
 
 
 def _whole(least, what):

@@ -97,7 +97,7 @@ def _reset_cause(number):
 def _pending(paddle):
     """Return a Check of a fault that stood when the doctor came, if there was one."""
     faults = [notice for notice in paddle.notices if "fault was pending" in notice]
-    cure = "find its cause before the motor moves again; docs/faults.md in hapticlab's source lists causes of each fault"
+    cure = "find its cause before the motor moves again; `hapticlab guide faults --open` lists causes of each fault"
     return [Check("fault", "attention", fault, cure) for fault in faults]
 
 

@@ -1,0 +1,21 @@
+"""What an owner of a paddle reads: the pages of docs/ that come with the package."""
+
+import webbrowser
+from pathlib import Path
+
+from ..errors import PaddleError
+
+PACKAGE = Path(__file__).resolve().parents[1]
+#: of a wheel, and of a checkout
+PLACES = (PACKAGE / "docs", PACKAGE.parent / "docs")
+
+
+def guide(parser, options):
+    """Print where a page is, and open it if asked."""
+    page = next((found for place in PLACES if (found := place / options.pages[options.page]).is_file()), None)
+    if page is None:
+        raise PaddleError(f"{options.pages[options.page]} did not come with this hapticlab; install hapticlab again")
+    print(page)
+    if options.open and not webbrowser.open(page.as_uri()):
+        raise PaddleError("this computer has no program that opens it; read the file with an editor")
+    return 0
