@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from textwrap import wrap
 
-from ...device.wirings import OUTPUTS, SUPPLY, Build
+from ...device.build import OUTPUTS, SUPPLY, Build
 from .pen import COLD, GREY, INK, WARM, arc, box, line, sheet, words
 
 #: rows of pins as they are printed, USB on the left, the upper row first; "" where there is none

@@ -3,7 +3,8 @@
 import sys
 from pathlib import Path
 
-from ...device.wirings import BUILDS, Build
+from ...device.build import Build
+from ...device.wirings import BUILDS
 from .drawing import Drawing
 from .wiring import WiringSheet
 
