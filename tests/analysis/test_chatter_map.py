@@ -58,20 +58,31 @@ def test_a_decay_onto_a_cycle_is_chatter_in_two_seconds():
         assert states[0] in ("chatter", "undecided") and states[1:] == ["chatter", "chatter"]
 
 
-def test_verdicts_on_a_heavy_handle_of_little_damping():
-    """Decays take longer than the records, and a backward difference has cycles beside rest: none is wrong."""
-    plant, options = tuple(chatter_map.random_plants())[4], {"ratios": (0.87, 1.13), "seconds": 20.0}  # 0.17 kg, 0.11 N s/m
-    counts, _ = chatter_map.measured((plant,), (1.0, 4.0), laws=("plain", "backward difference"), **options)
+@pytest.fixture
+def heavy():
+    """A handle of little damping: 0.17 kg, 0.11 N s/m."""
+    return tuple(chatter_map.random_plants())[4]
+
+
+@pytest.mark.wide
+def test_verdicts_on_a_heavy_handle_of_little_damping(heavy):
+    """Decays take longer than the records: none is wrong."""
+    options = {"ratios": (0.87, 1.13), "seconds": 20.0}
+    counts, _ = chatter_map.measured((heavy,), (1.0, 4.0), laws=("plain", "backward difference"), **options)
     assert sum(counts.values()) == 40 and not any(o == "wrong" for *_, o in counts)
     assert sum(n for (_, duration, _, o), n in counts.items() if o == "undecided" and duration == 4) <= 5
-    K = 0.87 * chatter_map.border(plant, "backward difference")
-    beside = chatter_map.Case(plant, "backward difference", K, 0.87, -9 * plant.push / K)  # falls onto a cycle beside rest
+
+
+def test_a_backward_difference_has_a_cycle_beside_rest(heavy):
+    K = 0.87 * chatter_map.border(heavy, "backward difference")
+    beside = chatter_map.Case(heavy, "backward difference", K, 0.87, -9 * heavy.push / K)  # falls onto a cycle beside rest
     (_, cycle), *_ = chatter_map.verdicts(beside, chatter_map.recorded(beside, 4.0), (4.0,))
     assert cycle.state == "chatter" and cycle.inside_growth < 0
 
 
 @pytest.mark.parametrize("law", list(chatter_map.LAWS))
 @pytest.mark.parametrize("ratio", [0.95, 1.05])
+@pytest.mark.always("1.05-*")
 def test_growth_inside_the_wall_is_the_exact_eigenvalue(law, ratio):
     plant = chatter_map.Plant(m=0.12, b=0.4, T=1e-3, push=1.0)
     K = ratio * chatter_map.border(plant, law)

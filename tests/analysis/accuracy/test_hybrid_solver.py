@@ -70,15 +70,15 @@ def test_a_bounce_is_newtons():
 
 def test_stick_and_slip_have_the_period_of_the_closed_form():
     # drawn at constant speed u through K: it slips 2 (F_s - F_c)/K when u is small, and the force falls by twice that
-    u, K, m, F_s, F_c = 1e-3, 400.0, 0.05, 1.0, 0.6
+    u, K, m, F_s, F_c = 2e-3, 400.0, 0.05, 1.0, 0.6
     z = hl.coordinate("z", unit="m")
     p = hl.parameters("m K F_s F_c", units="kg N/m N N", values=(m, K, F_s, F_c))
     F = p[1] * (x(t) - z)
     drawn = hl.mechanics.lagrange(
         p[0] * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[hl.contact.friction(slip=z.diff(t), coulomb=p[3], breakaway=p[2])]
     )
-    scene, motion = hl.Scene(force=F, eom=[drawn]), HandleMotion("draw", sp.Float(u) * t, 3.0)
-    times = np.linspace(0, 3.0, 30001)
+    scene, motion = hl.Scene(force=F, eom=[drawn]), HandleMotion("draw", sp.Float(u) * t, 1.5)
+    times = np.linspace(0, 1.5, 15001)
     found = second(scene, motion, times)
     w = np.sqrt(K / m)
     # slipping from rest at F_s: q = stretch - F_c/K obeys q'' = -w^2 q, q(0) = (F_s - F_c)/K, q'(0) = u
@@ -120,10 +120,11 @@ def test_friction_that_is_stiff_goes_to_a_solver_for_it():
     assert found.agreement < 1e-7 * found.peak  # rtol = 1e-10 over some thousand steps
 
 
-@pytest.mark.parametrize(("values", "peak"), [({"k_b": 2e3}, 1e-6), ({"k_b": 2e5}, 1e-6)])
-def test_penalty_contacts_shorter_than_a_sample_are_certified(values, peak):
+@pytest.mark.parametrize("stiffness", [2e3, 2e5])
+@pytest.mark.always("200000.0")
+def test_penalty_contacts_shorter_than_a_sample_are_certified(stiffness):
     k_b = hl.parameters("k_b", units="N/m", values=1e3)
-    scene = hl.library.ball_on_the_paddle(hl.contact.penalty(k=k_b))(**values)  # 2e5 N/m: in contact for 1.1 ms
+    scene = hl.library.ball_on_the_paddle(hl.contact.penalty(k=k_b))(k_b=stiffness)  # 2e5 N/m: in contact for 1.1 ms
     motion = HandleMotion("sine", 0.004 * sp.sin(2 * sp.pi * 5.3 * t) * (1 - sp.exp(-((t / 0.05) ** 2))), 0.6)
     found = reference(scene, motion)
-    assert found.agreement < peak * found.peak, str(found)
+    assert found.agreement < 1e-6 * found.peak, str(found)

@@ -256,6 +256,7 @@ def _at_50_ms():
         )),
     ],
 )  # fmt: skip
+@pytest.mark.always("rk4-*", "heun-*", "semi_implicit_euler_damped-*", "taylor-*")
 def test_the_least_of_method_hold_instant_and_touch_is_the_order(method, hold, force_at):
     touch, force, impulse = stopped()
     options, errors = {"method": method, "hold": hold, "force_at": force_at}, []

@@ -22,7 +22,7 @@ def run(k, seconds=4.0, **hand):
 
 
 def test_a_tremor_on_a_stable_wall_is_driven_and_was_taken_for_chatter():
-    paddle, log = run(500, intent=tremor)
+    paddle, log = run(500, seconds=2.0, intent=tremor)
     assert hl.stability_limit(paddle).K > 2000  # so nothing oscillates by itself
     assert hl.chatter(log).state == "chatter"
     found = hl.chatter(log, driven=paddle.hand)
@@ -43,7 +43,7 @@ def test_a_tremor_that_leaves_the_wall_and_comes_back_is_driven():
 
 def test_chatter_beside_a_tremor_is_found_at_its_own_frequency():
     """Above the limit the wall oscillates at some 30 Hz beside the 9 Hz of the hand."""
-    paddle, log = run(3000, intent=tremor)
+    paddle, log = run(3000, seconds=2.0, intent=tremor)
     limit = hl.stability_limit(paddle)
     assert limit.K < 3000
     found = hl.chatter(log, driven=paddle.hand)

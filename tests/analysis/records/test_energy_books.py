@@ -171,7 +171,7 @@ OSCILLATING = {
 
 
 @pytest.mark.parametrize("law", OSCILLATING)
-@pytest.mark.always("penalty", "spring")
+@pytest.mark.always("impulse", "spring")
 def test_what_oscillates_in_time_puts_work_in(law):
     """A ball on a shaking plate, and one on a spring whose stiffness swings: nothing leaks though t drives both."""
     A, om = hl.parameters("A om", units="m 1/s", values=(0.01, 30))

@@ -75,7 +75,7 @@ def off_slider_crank(own, channels):
 
 
 @pytest.mark.parametrize("enforce", WAYS)
-@pytest.mark.always("auto", "kkt")
+@pytest.mark.always("auto")
 def test_slider_crank(enforce):
     scene, own = slider_crank(enforce=enforce, alpha=100.0 if enforce == "baumgarte" else None)
     wanted = swing(own, 0.7, 2.0, TIMES)[0]

@@ -45,6 +45,11 @@ def heap(kind, method="sample", by_hand=False):
     return hl.Scene(force=0, eom=[motion], watch=watch, name=kind)
 
 
+@pytest.fixture(scope="module")
+def discs():
+    return hl.compile(heap("more discs"), "semi_implicit_euler", T=5e-4)
+
+
 def run(program, engine, ticks):
     parameters = np.array([[VALUES[c.name]] for c in program.parameters])
     return load(program, engine).run(ticks, np.zeros((ticks, len(program.inputs))), parameters).outputs
@@ -52,7 +57,7 @@ def run(program, engine, ticks):
 
 @pytest.mark.parametrize("kind", ["discs", "boxes", "mixed"])
 @pytest.mark.parametrize("method", ["semi_implicit_euler", "rk4"])
-@pytest.mark.always("semi_implicit_euler-*")
+@pytest.mark.always("semi_implicit_euler-mixed")
 def test_engines_that_skip_and_that_do_not_give_the_same_bits(kind, method):
     program = hl.compile(heap(kind, "faces"), method, T=5e-4)
     ticks = 120
@@ -63,18 +68,20 @@ def test_engines_that_skip_and_that_do_not_give_the_same_bits(kind, method):
         assert_same_bits(found[engine], found["interpreter"])
 
 
-@pytest.mark.parametrize("kind", ["discs", "boxes", "mixed"])
-@pytest.mark.always("mixed")
-def test_the_motion_is_that_of_whole_forces(kind):
+@pytest.mark.parametrize(
+    ("method", "kind"), [("semi_implicit_euler", "mixed"), ("rk4", "discs"), ("rk4", "boxes"), ("rk4", "mixed")]
+)
+@pytest.mark.always("semi_implicit_euler-*")
+def test_the_motion_is_that_of_whole_forces(method, kind):
     """A force that is zero times a slope is the zero that an open contact leaves."""
-    one, other = (run(hl.compile(heap(kind, by_hand=h), "rk4", T=5e-4, dtype="float64"), "auto", 150) for h in (False, True))
+    one, other = (run(hl.compile(heap(kind, by_hand=h), method, T=5e-4, dtype="float64"), "auto", 150) for h in (False, True))
     np.testing.assert_allclose(one, other, rtol=0, atol=1e-9 * np.abs(other).max())
 
 
-def test_pairs_that_are_apart_cost_little():
+def test_pairs_that_are_apart_cost_little(discs):
     """Of discs and the ground half of the instructions are needed while nothing touches."""
     pytest.importorskip("llvmlite")
-    tick = hl.compile(heap("more discs"), "semi_implicit_euler", T=5e-4).tick
+    tick = discs.tick
     items = Demand(tick).arranged(range(len(tick.instructions)))
     assert sum(isinstance(item, Arm) for item in items) >= 10  # each pair of discs
     assert sum(not isinstance(item, Arm) for item in items) < 0.6 * len(tick.instructions)
@@ -145,11 +152,10 @@ def test_polygons_that_are_apart_cost_next_to_nothing():
     assert sum(not isinstance(item, Arm) for item in items) < 0.06 * len(tick.instructions)
 
 
-def test_a_board_says_what_it_pays_for_open_contacts():
-    one = hl.compile(heap("mixed"), "semi_implicit_euler", T=5e-4)
-    paid = cost(one, "cortex-m4f")
+def test_a_board_says_what_it_pays_for_open_contacts(discs):
+    paid = cost(discs, "cortex-m4f")
     assert 0 < paid.of_cases < paid.typical
     assert f"cases      {paid.of_cases} of these" in str(paid)
-    assert cost(one, "host").of_cases == 0  # its time is not limited
+    assert cost(discs, "host").of_cases == 0  # its time is not limited
     wall = hl.compile(hl.wall()(k=150, x_o=0.01), T=2e-3)
     assert "cases" not in str(cost(wall))  # a case that small is computed everywhere
