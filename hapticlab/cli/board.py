@@ -10,7 +10,6 @@ from itertools import chain, count
 from pathlib import Path
 
 from .. import __version__
-from ..compiler.boards.board_records import BOARDS
 from ..course.drawings.wiring_files import wiring_svg
 from ..device.bring_up.about import restorable, settings_of
 from ..device.bring_up.bench import bench as first_power_up
@@ -20,7 +19,7 @@ from ..device.setup.before_flash import before_flash
 from ..device.setup.calibrate import calibrate as calibrate_paddle
 from ..device.setup.connect import connect
 from ..device.setup.doctor import doctor as walk
-from ..device.setup.drive.copy_firmware import COPIED, copy_firmware, waiting_boards
+from ..device.setup.drive.copy_firmware import COPIED, copy_firmware, usb_numbers, waiting_boards
 from ..device.setup.flash import FLASHED
 from ..device.setup.flash import flash as write_firmware
 from ..device.setup.person import Person, agrees
@@ -207,19 +206,15 @@ def _unused(path):
 def _likely_board(port):
     """The board that is meant where nobody said: by the USB numbers of its port, or by its drive; else an Uno."""
     found = [one for one in available_ports() if (one.device == port if port else one.known)]
-    copied = [name for name in COPIED for one in found if (one.vid, one.pid) in _usb_numbers(name)]
+    copied = [name for name in COPIED for one in found if (one.vid, one.pid) in usb_numbers(name)]
     if not copied and not found and not port:
         copied = [name for name in COPIED if waiting_boards(name)]
     return copied[0] if copied and len(copied) >= len(found) else "uno"
 
 
-def _usb_numbers(board):
-    return {(usb.vendor, usb.product) for usb in BOARDS[board].usb}
-
-
 def _port_of(board):
     """The only port with the USB numbers of a board, or None."""
-    found = [port.device for port in available_ports() if (port.vid, port.pid) in _usb_numbers(board)]
+    found = [port.device for port in available_ports() if (port.vid, port.pid) in usb_numbers(board)]
     return found[0] if len(found) == 1 else None
 
 

@@ -6,21 +6,18 @@ import numpy as np
 
 from ...compiler.boards.board_records import BOARDS
 from ...compiler.boards.cost import cost
-from ...scene.notation.symbols import n, parameters, x
-from ...scene.scene import Scene
 from ..link.messages import SENSORS
 from ..setup.calibrate import STEPS, calibrate
 from ..setup.person import agrees
+from ..setup.sensor_readings import JUMP, NOISY, REST, readings, watched_scene
 from ..setup.stored_settings import lead_home
 from .about import is_simulated
 from .report import Finding
 
-#: requests timed; watching [s]: loop, rest, motion
-PINGS, LOOP, REST, MOVED = 100, 2.0, 1.0, 8.0
+#: requests timed; watching [s]: loop, motion
+PINGS, LOOP, MOVED = 100, 2.0, 8.0
 #: bytes of a PING and its answer, and 2 ms that a board may take; a USB frame either way [s]
 PING_BYTES, ANSWER, USB = 22, 2e-3, 2e-3
-#: counts at rest that are noise, of a still handle; counts by which a moved one may leave its neighbours' line
-NOISY, JUMP = 6, 20
 #: part of the travel by which a sweep may miss it: as in homing
 MISS = 1 / 32
 
@@ -57,7 +54,7 @@ def link(bench):
     most = PING_BYTES / getattr(paddle.exchange.port, "bytes_per_second", paddle.exchange.port.baudrate / 10) + ANSWER + USB
     source = "bytes of the request at the port's rate, 2 ms on the board, 2 ms of USB"
     yield Finding.of("link", "latency, median", float(np.median(times)), "s", 0.0, most, source, f"worst {max(times):.4g} s")
-    program = paddle.program(_watching())
+    program = paddle.program(watched_scene())
     log = paddle.run(program, LOOP, passive=True, progress=False)
     yield from _loop(paddle, program, log)
 
@@ -80,18 +77,18 @@ def _loop(paddle, program, log):
 def sensor_at_rest(bench):
     """Noise of a handle that nobody touches."""
     bench.person.ask("Release the handle, and press Enter.")
-    counts = bench.counts(bench.paddle.run(_watching(), REST, passive=True, progress=False).x)
+    seen = readings(bench.paddle, REST)
     noise = bench.paddle.settings.sensor_noise / bench.metres_per_count if bench.paddle.settings else 0.0
     source = f"sensor_noise of the settings and {NOISY} counts"
-    yield Finding.of("sensor at rest", "width", float(np.ptp(counts)), "counts", 0, NOISY + 8 * noise, source)
-    yield Finding("sensor at rest", "rms", "counts", float(np.std(counts)))
+    yield Finding.of("sensor at rest", "width", seen.sweep, "counts", 0, NOISY + 8 * noise, source)
+    yield Finding("sensor at rest", "rms", "counts", float(np.std(seen.counts)))
 
 
 def sensor_moved(bench):
     """Whether the sensor follows the handle over its whole travel, and the board finds where it is."""
     bench.person.ask(f"Press Enter, then move the handle slowly from stop to stop and back, twice, for {MOVED:g} s.")
-    counts = bench.counts(bench.paddle.run(_watching(), MOVED, passive=True, progress=False).x)
-    settings, span = bench.paddle.settings, float(np.ptp(counts))
+    seen = readings(bench.paddle, MOVED)
+    settings, span = bench.paddle.settings, seen.sweep
     if settings is None:
         yield Finding("sensor moved", "range", "counts", span, note="nothing is calibrated to compare it with")
         return
@@ -99,21 +96,9 @@ def sensor_moved(bench):
     source = "travel of the settings, within 1/32, as homing takes it"
     yield Finding.of("sensor moved", "range", span, "counts", (1 - MISS) * travel, (1 + MISS) * travel, source)
     source = f"{JUMP} counts, as in the doctor"
-    yield Finding.of("sensor moved", "largest jump", _largest_jump(counts), "counts", 0, JUMP, source)
+    yield Finding.of("sensor moved", "largest jump", seen.jump, "counts", 0, JUMP, source)
     if settings.sensor != SENSORS["QUADRATURE"]:
         yield Finding("sensor moved", "wraps of the sensor", "", span / settings.wrap)
     lead_home(bench.paddle, bench.person)
     where, source = bench.paddle.state()["x"], "travel of the settings"
     yield Finding.of("sensor moved", "position found", where, "m", settings.travel_min, settings.travel_max, source)
-
-
-def _largest_jump(counts):
-    """Return how far a sample lies off the line through its neighbours, in counts, away from both stops."""
-    edge = 0.02 * np.ptp(counts)
-    free = (counts[1:-1] > counts.min() + edge) & (counts[1:-1] < counts.max() - edge)
-    return float(np.max(np.abs(counts[1:-1] - (counts[2:] + counts[:-2]) / 2), where=free, initial=0.0))
-
-
-def _watching():
-    k = parameters("k", units="N/m")
-    return Scene(force=k * x(n), name="watching")(k=0.0)

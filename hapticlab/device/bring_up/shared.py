@@ -24,10 +24,6 @@ class Bench:
         """Of the settings [m]; 1 where there are none."""
         return abs(self.paddle.settings.metres_per_count) if self.paddle.settings else 1.0
 
-    def counts(self, positions):
-        """Positions [m] in counts."""
-        return positions / self.metres_per_count
-
     def hold(self, more="Press Enter."):
         """Ask for the handle to be held against a pull."""
         self.person.ask(f"Hold the handle lightly in the middle. {more}")

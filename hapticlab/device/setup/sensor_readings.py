@@ -86,16 +86,16 @@ def measure_noise(paddle, person):
 
 def watch(paddle, seconds):
     """Return the Telemetry of a handle watched with the motor off."""
+    return paddle.run(watched_scene(), duration=seconds, passive=True, progress=False)
+
+
+def watched_scene():
+    """Return a scene that reads the handle and gives no force."""
     k = parameters("k", units="N/m")
-    return paddle.run(Scene(force=k * x(n), name="watching")(k=0.0), duration=seconds, passive=True, progress=False)
+    return Scene(force=k * x(n), name="watching")(k=0.0)
 
 
 def readings(paddle, seconds):
     """Watch the handle with the motor off and return its Readings."""
     log = watch(paddle, seconds)
-    return Readings(counts_of(paddle, log), log.fault)
-
-
-def counts_of(paddle, log):
-    """Return the counts of a Telemetry."""
-    return log.x / (paddle.settings.metres_per_count if paddle.settings else 1.0)
+    return Readings(log.x / (paddle.settings.metres_per_count if paddle.settings else 1.0), log.fault)

@@ -79,7 +79,7 @@ def copy_firmware(image=None, board="pico", port=None, *, progress=True, tell=la
     trouble = _copy(content, drive / path.name, progress)
     if trouble and not _within(LEAVE_WAIT, lambda: not is_drive(drive)):
         raise PaddleError(f"{drive} took no file ({trouble.strerror or trouble}). {_by_hand(how)}, then flash it again")
-    port = _within(PORT_WAIT, lambda: _new_port(_numbers(board), before))
+    port = _within(PORT_WAIT, lambda: _new_port(usb_numbers(board), before))
     if port is None:
         raise PortError(f"{path.name} was copied, but {_not_back(how, drive)}", "missing")
     return Copied(port.device, path.name, len(content))
@@ -131,7 +131,7 @@ def _wait_for_drive(board, how, port, tell):
 
 def _asked(board, how, port, tell):
     """Ask a board that runs this firmware for its drive, by closing its port at 1200 baud; it obeys with its motor off only."""
-    numbers = _numbers(board)
+    numbers = usb_numbers(board)
     ports = [one.device for one in available_ports() if (one.vid, one.pid) in numbers and port in (None, one.device)]
     if len(ports) != 1:
         return None
@@ -144,7 +144,8 @@ def _asked(board, how, port, tell):
     return _within(ASKED_WAIT, lambda: _drives(how))
 
 
-def _numbers(board):
+def usb_numbers(board):
+    """Return vendor and product of each USB device that a board may be."""
     return {(usb.vendor, usb.product) for usb in BOARDS[board].usb}
 
 
