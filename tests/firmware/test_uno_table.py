@@ -30,9 +30,9 @@ def test_an_encoder_as_fast_as_stated_makes_no_step_late():
 
 
 @pytest.mark.wide
-def test_a_faster_one_makes_steps_late_and_a_much_faster_one_loses_edges():
+def test_a_faster_one_ends_the_run_and_a_much_faster_one_loses_edges():
     rate = int(ROWS["wall, 1 kHz"][-1])
-    fault, late, _ = follows(1.2 * rate, wall, 1e-3, 0.1)
-    assert late > 0 and "OVERRUN" in fault
+    fault, _, _ = follows(1.25 * rate, wall, 1e-3, 0.1)
+    assert "OVERRUN" in fault or "SENSOR" in fault  # which comes first depends on the phase of edges and bytes
     fault, late, _ = follows(120_000, wall, 10e-3, 0.1)
     assert "SENSOR" in fault and late == 0

@@ -197,7 +197,7 @@ def test_a_double_pendulum_is_refused_with_its_share_and_every_offer_fits():
     with pytest.raises(ProgramLimitError) as refusal:
         fit(scene, T=1e-3, **options)
     message = str(refusal.value)
-    assert re.search(r"double pendulum with rk4: 4\.\d ms of a 1 ms period on uno \(4\d\d%, typical\)", message)
+    assert re.search(r"double pendulum with rk4: 4(\.\d)? ms of a 1 ms period on uno \(4\d\d%, typical\)", message)
     assert re.search(r"and it needs 12\d\d bytes of memory; uno has \d+; fits", message)
     named = offers(message)
     assert {"semi_implicit_euler"} <= {o.get("method") for o in named}
