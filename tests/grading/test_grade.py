@@ -17,7 +17,6 @@ from hapticlab.grading.handed_in.replies import Garbage, outcomes_of, rounded, t
 from hapticlab.grading.handed_in.submission import Submission
 from hapticlab.grading.marking import Found, exercise_report
 from hapticlab.grading.sessions.limits import Limits
-from hapticlab.grading.sessions.starter import start
 
 LIMITS = Limits(seconds=4.0)
 ENDED = {"energy": "import os\ndef energy(x, k):\n    os._exit(0)"}
@@ -50,9 +49,8 @@ def assignment(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def starter():
-    with start("auto") as started:
-        yield started
+def starter(started):
+    return started("auto")
 
 
 def submission(*more, **changed):

@@ -132,6 +132,7 @@ def run(words, cwd, **environment):
     return subprocess.run(words, cwd=cwd, env=given, capture_output=True, text=True, timeout=300, check=False)
 
 
+@pytest.mark.wide
 def test_files_in_the_working_folder_are_not_imported(course, hostile):
     started = "import sys; from hapticlab.cli.main import main; sys.exit(main(sys.argv[1:]))"
     done = run(command(course, sys.executable, "-P", "-c", started), hostile)

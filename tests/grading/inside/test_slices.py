@@ -310,6 +310,7 @@ def test_the_slice_of_a_solved_lab_earns_full_marks(folder, monkeypatch, tmp_pat
 
 
 @pytest.mark.parametrize("folder", find_labs(), ids=lambda folder: folder.name)
+@pytest.mark.always("0[!4]*", "10*")
 def test_the_slice_of_an_untouched_lab_runs_and_earns_nothing(folder, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     lab, cells = folder.lab(), code_of(read(folder.notebook))
