@@ -82,5 +82,5 @@ def test_changes_and_unknown_names():
     assert (paddle.m, paddle.T, paddle.coulomb, paddle.force_max) == (hapkit.m, 5e-4, 0.1, hapkit.force_max)
     with pytest.raises(PaddleError, match="mass is not an argument of SimulatedPaddle"):
         SimulatedPaddle.from_profile(eth, mass=1)
-    with pytest.raises(PaddleError, match="no profile 'falcon'; there are hapkit, hapkit_as5048a, longhorn, motor_shield, eth"):
+    with pytest.raises(PaddleError, match=f"no profile 'falcon'; there are {', '.join(PROFILES)}"):
         profile("falcon")

@@ -193,7 +193,7 @@ def test_no_force_is_within_the_dead_band():
 
 def test_every_profile_makes_settings_or_says_why_not():
     assert nominal("hapkit").is_nominal and not changed(nominal("hapkit"), date=20261121).is_nominal
-    with pytest.raises(PaddleError, match="no nominal settings for 'eth'; they exist for hapkit."):
+    with pytest.raises(PaddleError, match="no nominal settings for 'eth'; they exist for .*hapkit, "):
         nominal("eth")
     with pytest.raises(PaddleError, match="stiffness is not a setting; the settings are ident"):
         changed(nominal("hapkit"), stiffness=1)

@@ -15,7 +15,7 @@ from hapticlab.device.setup.calibrate import calibrate
 from hapticlab.device.setup.person import Person
 from hapticlab.device.setup.sensor_readings import most_at_rest
 from hapticlab.device.wiring import Wiring
-from hapticlab.device.wirings import build, built_as
+from hapticlab.device.wirings import BUILDS, build, built_as
 from hapticlab.errors import LinkError, PaddleError
 
 YES = {"Store these settings": "yes"}
@@ -155,16 +155,37 @@ class Typing(Person):
         return self.lines.pop(0)
 
 
+#: as a person is asked about them
+ON_UNO = [name for name, one in BUILDS.items() if one.board == "uno"]
+
+
 def test_a_known_paddle_is_chosen_by_its_number():
-    person = Typing("0", "9", "3")
+    number = str(ON_UNO.index("longhorn_d11") + 1)
+    person = Typing("0", "99", number)
     assert ask_built(person, "uno") is build("longhorn_d11")
-    assert "   3 longhorn_d11   Longhorn Hapkit with the enable on D11" in person.said[0]
-    assert person.said[1] == "[1 to 7]?" and "'0' is not one of hapkit, hapkit_as5048a" in person.said[2]
+    assert f"   {number} longhorn_d11   Longhorn Hapkit with the enable on D11" in person.said[0]
+    assert person.said[1] == f"[1 to {len(ON_UNO) + 1}]?" and "'0' is not one of hapkit, hapkit_as5048a" in person.said[2]
 
 
 def test_something_else_is_asked_pin_by_pin_until_the_board_can_do_it():
     wrong = ("encoder", "D2", "d3", "enable", "D7", "a0", "D10", "7812")
-    person = Typing("7", "e", *wrong[1:3], "3", *wrong[4:7], "3", "encoder", "13", "2", "~3", "enable", "7", "A0", "D11", "31372")
+    person = Typing(
+        str(len(ON_UNO) + 1),
+        "e",
+        *wrong[1:3],
+        "3",
+        *wrong[4:7],
+        "3",
+        "encoder",
+        "13",
+        "2",
+        "~3",
+        "enable",
+        "7",
+        "A0",
+        "D11",
+        "31372",
+    )
     found = ask_built(person, "uno")
     assert found.wiring == Wiring("QUADRATURE", "TWO_INPUTS_ENABLE", (7, 14, 11), (2, 3), 31_372)
     assert "EN on D10: the board has PWM on D3, D5, D6, D11. Move this wire to one of them." in person.said
