@@ -44,7 +44,7 @@ def same_bits(make, ticks):
 @pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
 @pytest.mark.always("mass_and_wall")
 def test_telemetry_equals_the_program_in_every_bit(make):
-    same_bits(make, 2000)  # 10 000 in all
+    same_bits(make, 1000)  # 5 000 in all
 
 
 @pytest.mark.slow

@@ -103,7 +103,7 @@ LOTS = [21, pytest.param(126, marks=pytest.mark.slow)]
 
 @pytest.mark.parametrize("each", LOTS)
 @pytest.mark.parametrize(("method", "hold"), PAIRS)
-@pytest.mark.always("verlet-soh-*", "adams_bashforth3-foh-*", "taylor-zoh-*", "rk4-zoh-*")
+@pytest.mark.always("verlet-soh-*", "adams_bashforth3-foh-*")
 def test_no_passive_hand_is_unstable_at_the_damping_asked_for(method, hold, each):
     """In a thousand random networks of masses, springs and dampers, by eigenvalues; six thousand where it may take longer."""
     for k, force_at in enumerate(("before", "after", "mean")):

@@ -223,7 +223,7 @@ def every_hold(scene, known, felt, quick):
         *every_hold(struck, of_struck, (500, 0), "soh"),
     ],
 )
-@pytest.mark.always("rubbed-*", "struck-*")
+@pytest.mark.always("struck-*")
 def test_it_is_what_exponentials_and_bracketed_roots_give(scene, known, felt, hold):
     """Several walls and two masses, friction, impacts: with nothing of the package; a part in 1e12 is rounding of both."""
     handle = SWING + 0.004 * np.sin(2 * np.pi * 11.7 * np.arange(300) * T)

@@ -115,6 +115,7 @@ def scenes_to_filter():
 
 @pytest.mark.parametrize("clamp", [False, True])
 @pytest.mark.parametrize("name", scenes_to_filter())
+@pytest.mark.always("*-True", "gated-False", "with a memory-False")
 def test_the_filter_filters_whatever_is_felt(name, clamp):
     """Around switches, powers, memories and estimates it is the formula on the record of the force alone."""
     scene = scenes_to_filter()[name]
