@@ -145,6 +145,7 @@ CASES = [
 
 
 @pytest.mark.parametrize("law, B, delay, grip", CASES)
+@pytest.mark.always("zoh-*", "half_sample-*", "backward_difference-*", "ellis-0.0-0.0012*")
 def test_limit_against_thirty_digits(law, B, delay, grip):
     p = paddle(delay=delay, hand=grip)
     limit = stability_limit(p, law=law, B=B)

@@ -86,7 +86,7 @@ WIDENS = {
 
 
 @pytest.mark.parametrize("name", WIDENS)
-@pytest.mark.always("encoder", "damping, buzz")
+@pytest.mark.always("damping, buzz")
 def test_what_widens_the_z_width(name):
     """As Colgate and Brown (1994) measured: damping of the device, a finer encoder, a faster rate."""
     border, changes = WIDENS[name]
