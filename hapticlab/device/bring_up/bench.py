@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..board.serial_paddle import SerialPaddle
     from ..setup.person import Person
 
-#: in order; the limits of speed and travel are lowered once for two steps
+#: in order; "over-speed" lowers the limit of the speed, then that of the travel
 OFF = {
     "calibration": motor_off.calibration,
     "link": motor_off.link,
@@ -66,7 +66,7 @@ def bench(paddle: SerialPaddle, person: Person, *, tell: Callable[[Any], Any] = 
     Notes
     -----
     The motor gives at most 0.4 N until the last step, which asks first. For two steps the limits of speed and travel that the
-    board stores are lowered, and put back. The position of the handle is asked for again after that and after the cable. A
+    board stores are lowered, and put back. The position of the handle is asked for again where one of them lost it. A
     paddle whose cable was pulled is closed.
 
     Examples

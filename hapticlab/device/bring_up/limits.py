@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from ..board.homing import state_flag
 from ..board.settings import changed
 from ..link.messages import SENSORS
 from ..setup.stored_settings import lead_home, store
@@ -19,35 +20,39 @@ SEEN, T_MOST = 3, 10e-3
 
 
 def limits(bench):
-    """A flick, then a slow move: both end the pull."""
+    """A flick, then a slow move: both end the pull. The flick may look like a sensor that fails, which loses the position."""
     bench.person.ask("Hold the handle still in the middle, and press Enter.")
-    with lowered(bench):
+    kept = bench.paddle.settings
+    with lowered(bench, speed_max=min(TRIED_SPEED, kept.speed_max)):
         yield from _over_speed(bench)
+    lead_home(bench.paddle, bench.person)
+    middle = (kept.travel_min + kept.travel_max) / 2
+    low, high = (middle + TRIED_TRAVEL * (stop - middle) for stop in (kept.travel_min, kept.travel_max))
+    with lowered(bench, travel_min=low, travel_max=high):
         yield from _over_travel(bench)
     lead_home(bench.paddle, bench.person)
 
 
 @contextmanager
-def lowered(bench):
-    """Store lower limits of speed and travel, and the former ones again whatever happens, as far as the link allows."""
-    kept = bench.paddle.settings
-    middle, part = (kept.travel_min + kept.travel_max) / 2, TRIED_TRAVEL
-    low, high = (middle + part * (stop - middle) for stop in (kept.travel_min, kept.travel_max))
-    bench.lowered = kept
-    _store_held(bench.paddle, changed(kept, speed_max=min(TRIED_SPEED, kept.speed_max), travel_min=low, travel_max=high))
+def lowered(bench, **lower):
+    """Store lower limits, and the former ones again whatever happens, as far as the link allows."""
+    kept = bench.lowered = bench.paddle.settings
+    _store_held(bench.paddle, changed(kept, **lower))
     try:
         yield
     finally:
-        store(bench.paddle, kept)
+        _store_held(bench.paddle, kept)
         bench.lowered = None
 
 
 def _store_held(paddle, settings):
-    """Store settings, and tell the board its position again, which its running count of the sensor still knows."""
-    before = paddle.state()
+    """Store settings, and tell the board its position again, if it had one: its running count of the sensor goes on."""
+    before, known = paddle.state(), state_flag(paddle.exchange, "HOMED")
     store(paddle, settings)
     moved = paddle.state()["counts"] - before["counts"]
-    paddle.home(at=before["x"] + moved * settings.metres_per_count)
+    at = before["x"] + moved * settings.metres_per_count
+    if known and settings.travel_min <= at <= settings.travel_max:
+        paddle.home(at=at)
 
 
 @contextmanager
