@@ -11,6 +11,9 @@ from pathlib import Path, PurePosixPath
 
 import pytest
 
+# before NumPy is loaded: on small matrices a second thread costs four times the time of one, and processes share the cores
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 IN_CI = os.environ.get("CI", "").lower() in ("1", "true", "yes")
 ALLOWED = os.environ.get("HAPTICLAB_ALLOWED_SKIP", "")
 #: for a test marked slow that says no other [s]; the limit of the others is in pyproject.toml
