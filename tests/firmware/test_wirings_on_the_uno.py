@@ -203,7 +203,8 @@ def test_the_angle_is_of_the_tick():
         updates, duties = loop.board.updates(), loop.board.update_duties()
     cycles, angles = np.array(led.taken).T
     period = np.diff(cycles[-150:-10]) / CYCLES_PER_SECOND
-    assert np.abs(period - 1e-3).max() < 8e-6, "an interrupt holds a sample off, and nothing else"
+    # a byte that came holds a sample off for 9 us at most, as the board's README says, one that goes for 2.4 us; nothing else
+    assert np.abs(period - 1e-3).max() < 11.5e-6
     driven = duties != 0
     before = np.searchsorted(cycles, updates[driven]) - 1
     for late, allowed in ((0, True), (1, False)):
