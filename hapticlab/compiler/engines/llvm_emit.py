@@ -13,7 +13,7 @@ from ..ir.program import LEAVES
 from ..ir.trace import reachable
 from .llvm_branches import Branches
 from .side_by_side import functions, in_order
-from .skipped_arms import Demand, in_lazy_order
+from .skipped_arms import Demand, in_lazy_order, needs_parameters_alone
 
 SCALAR = {"f32": "float", "f64": "double", "bool": "i1", "i32": "i32"}
 #: of a real type: bits of the whole, bits of the mantissa, exponent bias
@@ -229,7 +229,7 @@ def emit(program, lanes=1):
     first = w.names(init, "i", {"param": "%p", "input": "%y"})
     names = w.names(tick, "t", {"param": "%p", "input": "%x", "state": "%s"})
     begun = [first[k] for k in init.states]
-    hoisted = _needs_parameters_alone(program.tick)
+    hoisted = needs_parameters_alone(program.tick)
     stepped = set(reachable(program.tick.instructions, program.tick.states)) - hoisted
     fixed = w.lines(tick, names, hoisted)
     kept = set(reachable(tick.instructions, tick.outputs)) - stepped - hoisted
@@ -257,12 +257,3 @@ def emit(program, lanes=1):
         **{part: "\n  ".join(lines) for part, lines in parts.items()},
     )  # fmt: skip
     return "\n".join(sorted(w.intrinsics)) + text
-
-
-def _needs_parameters_alone(block):
-    """Return the positions that are the same in every tick."""
-    same = set()
-    for k, i in enumerate(block.instructions):
-        if i.op in ("const", "param") or (i.args and same.issuperset(i.args)):
-            same.add(k)
-    return same

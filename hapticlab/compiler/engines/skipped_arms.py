@@ -207,3 +207,12 @@ def _bits(number):
         lowest = number & -number
         yield lowest.bit_length() - 1
         number ^= lowest
+
+
+def needs_parameters_alone(block):
+    """Return the positions that are the same in every tick."""
+    same = set()
+    for k, i in enumerate(block.instructions):
+        if i.op in ("const", "param") or (i.args and same.issuperset(i.args)):
+            same.add(k)
+    return same

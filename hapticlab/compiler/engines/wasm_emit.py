@@ -9,7 +9,7 @@ import re
 from string import Template
 
 from ..ir.trace import reachable
-from .skipped_arms import Arm, Demand, work
+from .skipped_arms import Arm, Demand, needs_parameters_alone, work
 from .wasm_code import BlockCode, Functions, Locals, get, put
 from .wasm_lanes import ONE, TWO
 from .wasm_module import module
@@ -128,15 +128,6 @@ def at_once(program):
     items = Demand(program.tick).arranged(range(len(instructions)))
     skipped = sum(work(instructions[k]) for arm in items if isinstance(arm, Arm) for k in arm.positions())
     return ONE if 2 * skipped > sum(map(work, instructions)) else TWO
-
-
-def needs_parameters_alone(block):
-    """Return the positions that are the same in every tick."""
-    same = set()
-    for k, i in enumerate(block.instructions):
-        if i.op in ("const", "param") or (i.args and same.issuperset(i.args)):
-            same.add(k)
-    return same
 
 
 def _advance(states, pushed):
