@@ -16,6 +16,7 @@ from five_scenes import pendulum
 import hapticlab as hl
 from hapticlab import n, x
 from hapticlab.device.board.settings import nominal
+from hapticlab.device.link.messages import FAULTS as NAMES
 from hapticlab.device.link.messages import SENSORS
 
 T = 1e-3
@@ -133,6 +134,16 @@ def measure(fault, emulated=emulated_uno, kept=NOMINAL, before=0.1, rest=0.2):
             paddle.exchange.wait(lambda: paddle.exchange.now() >= last, 0.01)
         off = off_from(paddle.loop.board, begun)
         return (off - begun) / paddle.loop.board.hz, paddle.stop() if fault.says else None
+
+
+def assert_off_in_time(name, fault, taken, log, record_property):
+    """The motor was off within the time that is stated for a fault, and the record says which fault it was."""
+    record_property("motor_off_after_s", taken)
+    print(f"{name}: motor off {1e3 * taken:.3f} ms after it, stated {1e3 * fault.within:.1f} ms")
+    assert 0 <= taken <= fault.within
+    if fault.says:
+        _, cause, _ = NAMES[fault.says]
+        assert fault.says in log.fault and cause in log.fault and "the motor is off" in log.fault
 
 
 def off_from(board, begun):

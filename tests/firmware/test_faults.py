@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 from emulated import emulated_uno
 from emulator import missing
-from faults import ALWAYS, FAULTS, measure
+from faults import ALWAYS, FAULTS, assert_off_in_time, measure
 
 from hapticlab.device.board.settings import changed
 from hapticlab.device.link.messages import FAULTS as NAMES
@@ -22,14 +22,7 @@ def measured(name):
 @pytest.mark.parametrize("name", FAULTS)
 @pytest.mark.always(*(name for name in FAULTS if name != "sensor frozen"))  # a second; test_reading.py has it on the host
 def test_the_motor_is_off_in_time(name, record_property):
-    fault = FAULTS[name]
-    taken, log = measured(name)
-    record_property("motor_off_after_s", taken)
-    print(f"{name}: motor off {1e3 * taken:.3f} ms after it, stated {1e3 * fault.within:.1f} ms")
-    assert 0 <= taken <= fault.within
-    if fault.says:
-        _, cause, _ = NAMES[fault.says]
-        assert fault.says in log.fault and cause in log.fault and "the motor is off" in log.fault
+    assert_off_in_time(name, FAULTS[name], *measured(name), record_property)
 
 
 def test_every_fault_of_the_table_is_injected():

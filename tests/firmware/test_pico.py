@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from faults import assert_off_in_time
 from pico_emulator import POWER, Pico, missing
 from pico_faults import PICO_FAULTS, measure
 from pico_loop import PaddleHandle, emulated_pico, flash_of, hapkit, loop_of, offer
@@ -32,14 +33,7 @@ def again(loop, **options):
 @pytest.mark.parametrize("name", PICO_FAULTS)
 @pytest.mark.always("host silent")
 def test_the_motor_is_off_in_time(name, record_property):
-    fault = PICO_FAULTS[name]
-    taken, log = measure(fault)
-    record_property("motor_off_after_s", taken)
-    print(f"{name}: motor off {1e3 * taken:.3f} ms after it, stated {1e3 * fault.within:.1f} ms")
-    assert 0 <= taken <= fault.within
-    if fault.says:
-        _, cause, _ = NAMES[fault.says]
-        assert fault.says in log.fault and cause in log.fault and "the motor is off" in log.fault
+    assert_off_in_time(name, PICO_FAULTS[name], *measure(PICO_FAULTS[name]), record_property)
 
 
 def test_every_fault_that_a_board_can_have_is_injected():
