@@ -23,7 +23,8 @@ from .upload import upload
 SAMPLES_SHARE = 0.9
 #: bytes of a sample beside its numbers: tick, flags, frame
 SAMPLE_OVERHEAD = 11
-_NUMPY = {"f32": "<f4", "bool": "<i4", "i32": "<i4"}
+#: of a number in a sample, by its type in the program
+ROW_TYPES = {"f32": "<f4", "bool": "<i4", "i32": "<i4"}
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class Run:
         self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
         self._rows, self._taken = deque(), -every
         self._row = np.dtype([("tick", "<u4"), ("flags", "u1"), ("x", "<f4"), ("v", "<f4"), ("F", "<f4")] + [
-            (f"channel.{c.name}", _NUMPY[c.type]) for c in self.program.outputs[1:]])  # fmt: skip
+            (f"channel.{c.name}", ROW_TYPES[c.type]) for c in self.program.outputs[1:]])  # fmt: skip
 
     def begin(self):
         """Take samples from here on: those that are still under way from an earlier run came before."""

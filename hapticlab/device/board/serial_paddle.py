@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 #: seconds a board may be silent in a run, beyond the time to the next look, before the host gives up
 PATIENCE = 1.0
+#: how long a board may take to answer, from reset [s]
+HELLO = 3.0
 #: ticks from one look at a run to the next
 LOOK = 500
 #: the smallest size that BEGIN takes: one byte beside the CRC-32 at the end
@@ -97,7 +99,7 @@ class SerialPaddle(Paddle):
     (100, None)
     """
 
-    def __init__(self, url: str, *, T: Number = 1e-3, port: Any = None, hello: Number = 3.0) -> None:
+    def __init__(self, url: str, *, T: Number = 1e-3, port: Any = None, hello: Number = HELLO) -> None:
         self.url, self.T = url, number("T", T, "s", "a paddle", above=0, error=PaddleError)
         self.exchange = Exchange(open_port(url) if port is None else port)
         self._loaded: Loaded | None = None  # what is on the board

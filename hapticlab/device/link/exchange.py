@@ -235,7 +235,7 @@ class Exchange:
         if self._wanted is None or frame.sequence != self._wanted[1]:
             return False
         asked = MESSAGES[self._wanted[0]].number
-        return known["request"] == asked if frame.message == "ACK" else frame.message in _ANSWERS.get(self._wanted[0], ())
+        return known["request"] == asked if frame.message == "ACK" else frame.message in ANSWERS.get(self._wanted[0], ())
 
     def _beat(self):
         """Say that the host is there, unless a request said so or waits for its reply."""
@@ -271,7 +271,7 @@ class Exchange:
 
 
 #: which message answers which request, where it is not ACK
-_ANSWERS = {"HELLO": ("WELCOME",), "PING": ("PONG",), "STATUS": ("STATE",), "READ": ("BYTES",)}
+ANSWERS = {"HELLO": ("WELCOME",), "PING": ("PONG",), "STATUS": ("STATE",), "READ": ("BYTES",)}
 
 
 def _keeps_alive(message):

@@ -20,6 +20,8 @@ except ImportError:  # Windows
 
 #: pyserial looks for protocol_<scheme> in these packages
 HANDLERS = "hapticlab.device.urls"
+#: of every board
+BAUDRATE = 500000
 #: bytes that are worth waking a reader for at once: two samples
 ENOUGH = 64
 #: an environment variable; where it is "sim", as while grading, nobody's hand is at the handle and no other port opens
@@ -67,7 +69,7 @@ def _natural(port):
     return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", port.device)]
 
 
-def open_port(url, *, baudrate=500000, timeout=0.05):
+def open_port(url, *, baudrate=BAUDRATE, timeout=0.05):
     """Open a serial port, for this program alone, and return pyserial's object.
 
     Parameters

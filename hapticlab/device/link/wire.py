@@ -63,7 +63,7 @@ def decode(stuffed, session=None):
     end = len(body) - 2
     if session is not None and MESSAGES[name].guarded:
         end -= 4
-        if zlib.crc32(body[:end], session) != struct.unpack_from("<I", body, end)[0]:
+        if end < 2 or zlib.crc32(body[:end], session) != struct.unpack_from("<I", body, end)[0]:
             return None
     return Frame(name, body[1], body[2:end])
 

@@ -2,8 +2,9 @@
 // Asked: module (a path); side, whether it is a library for Pyodide; runs of hl_host_run; script, calls of core.js's Board.
 import { readFileSync } from "node:fs"
 
-const core_js = new URL("../../../hapticlab/widgets/browser/core.js", import.meta.url)
-const { Board, frames, samplesOf } = new Function(`${readFileSync(core_js, "utf-8")}; return { Board, frames, samplesOf }`)()
+const board = new URL("../../../hapticlab/widgets/browser/board/", import.meta.url)
+const scripts = ["messages.js", "link.js", "core.js"].map((name) => readFileSync(new URL(name, board), "utf-8")).join("\n")
+const { Board, Decoder } = new Function(`${scripts}; return { Board, Decoder }`)()
 const doubles = (text) => new Float64Array(Uint8Array.from(Buffer.from(text, "base64")).buffer)
 const text = (array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength).toString("base64")
 
@@ -65,16 +66,23 @@ function run(core, { program, registers, ticks, outputs, states, rounds = 0, ...
   return { result, fault, outputs: found(out, ticks * outputs), states: found(kept, states), ns: times.length ? Math.min(...times) : null }
 }
 
-/** Repeat what was done to a board; its answers, and what samplesOf makes of them. */
+/** Numbers of a sample: x [m], v [m/s], F [N] and what the scene watches. */
+function sample({ payload }) {
+  const view = new DataView(payload.buffer)
+  const values = Array.from({ length: (payload.length - 5) / 4 }, (_, k) => view.getFloat32(5 + 4 * k, true))
+  return { tick: view.getUint32(0, true), flags: payload[4], values }
+}
+
+/** Repeat what was done to a board; its answers, and the samples among them. */
 function replay(board, script) {
-  const answers = [], samples = []
+  const answers = [], samples = [], decoder = new Decoder()
   for (const [call, ...given] of script) {
     if (call === "receive") board.receive(Uint8Array.from(Buffer.from(given[0], "hex")))
     if (call === "tick") answers.push(board.tick(...given))
     if (call === "transmit") {
       const said = board.transmit()
       answers.push(Buffer.from(said).toString("hex"))
-      samples.push(...samplesOf(frames(said)))
+      samples.push(...decoder.feed(said).filter(({ message }) => message === "SAMPLE").map(sample))
     }
   }
   return { answers, samples, duty: board.duty, period: board.period, store: Buffer.from(board.store).toString("hex") }
