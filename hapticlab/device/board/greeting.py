@@ -8,6 +8,8 @@ from ...errors import LinkError
 from ..link.messages import FIRMWARE, RESET_CAUSES, STATES, row_of, table_hash
 from .run import fault_words
 
+#: how long a board may take to answer, from reset [s]
+HELLO = 3.0
 #: seconds between two hellos: opening the port has reset many a board, whose bootloader listens first
 AGAIN = 0.2
 

@@ -39,7 +39,7 @@ def tables():
         "patience": exchange.PATIENCE,
         "tries": exchange.TRIES,
         "hello_again": greeting.AGAIN,
-        "hello_patience": serial_paddle.HELLO,
+        "hello_patience": greeting.HELLO,
         "silence": serial_paddle.PATIENCE,
         "leash": streaming.LEASH,
         "lead": streaming.LEAD,

@@ -21,7 +21,7 @@ from ..link.serial_ports import open_port
 from ..live_parameters import check_margin, checked, in_portions, named_values, send
 from ..paddle import Paddle
 from ..progress import progress_bar
-from .greeting import cleared, explain_silence, introduction, say_hello, silent_fault, what_happened
+from .greeting import HELLO, cleared, explain_silence, introduction, say_hello, silent_fault, what_happened
 from .homing import home
 from .run import Loaded, Run, Timing, decimation, fault_words, load
 from .upload import STORE_PATIENCE, check_period, check_room, read_settings, upload
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 #: seconds a board may be silent in a run, beyond the time to the next look, before the host gives up
 PATIENCE = 1.0
-#: how long a board may take to answer, from reset [s]
-HELLO = 3.0
 #: ticks from one look at a run to the next
 LOOK = 500
 #: the smallest size that BEGIN takes: one byte beside the CRC-32 at the end
