@@ -38,6 +38,7 @@ from .scene.notation.symbols import T, coordinate, n, parameters, signal, t, v, 
 from .scene.scene import Scene
 from .vocabulary import find
 from .widgets.live import live
+from .widgets.shared.share import share
 from .widgets.show import show
 
 __version__: str
@@ -77,6 +78,7 @@ __all__ = [
     "plot",
     "records",
     "shapes",
+    "share",
     "show",
     "signal",
     "stability",

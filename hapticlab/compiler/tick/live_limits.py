@@ -68,6 +68,18 @@ class Limits(Frozen):
         return Frozen, (_apart(self.steps, self),)
 
 
+def limits_apart(program):
+    """Return name -> (low, value, high) of live parameters, for whoever sets several at once and has no steps to ask.
+
+    Each value takes a part of the way to its limit, :func:`part_of_the_way`; up to a sum of 1 the steps are stable. Also of
+    methods whose steps are otherwise asked where a value is set.
+    """
+    steps = getattr(program.limits, "steps", None)
+    if steps is None or not steps.known_at(dict(zip([c.name for c in program.parameters], program.values, strict=True))):
+        return dict(program.limits)
+    return _apart(steps, program.limits or _limits(program, steps))
+
+
 def kept_stable(program, stepped, form, graph):
     """A program whose live parameters keep its steps stable, with notes, and its margin among the facts.
 

@@ -18,14 +18,18 @@ def not_finite(program, code, tick, T):
     T : float
         Sampling period [s].
     """
-    watched = (f"the watched {c.name}" for c in program.outputs[1:])
-    names = ["the force F", *watched, *(f"the state {c.name}" for c in program.states)]
-    culprit = f"{names[int(code) - 1]} of {program.name}"
+    culprit = f"{culprits(program)[int(code) - 1]} of {program.name}"
     when = f"tick {tick} (t = {tick * T:g} s)"
-    return f"{when}: {culprit} was not finite; the motor is off from then on{_likely_cause(program)}"
+    return f"{when}: {culprit} was not finite; the motor is off from then on{likely_cause(program)}"
 
 
-def _likely_cause(program):
+def culprits(program):
+    """Return what may be not finite in words, in the order of the numbers of ``fault``, 1 first."""
+    watched = (f"the watched {c.name}" for c in program.outputs[1:])
+    return ["the force F", *watched, *(f"the state {c.name}" for c in program.states)]
+
+
+def likely_cause(program):
     """The likely cause of a program's stop: what its notes say, an angle past all sines; else nothing."""
     left = [note.where for note in program.notes if isinstance(note, UndefinedForceNote)]
     likely = f". Most likely {' or '.join(left)}" if left else ""

@@ -32,14 +32,19 @@ class Parameter(sp.Symbol):
     def check(self, value):
         """The value as a float in SI, within the parameter's range."""
         number = in_si(value, self.unit, self.name)
-        kind, word = kind_of(self.unit)
+        needs = self.needs()
         if not math.isfinite(number):
             raise ParameterError(f"{self.name} = {number}; needs a finite number in {self.unit}")
-        if kind == "inertia" and number <= 0:
-            raise ParameterError(f"{self.name} = {number:g} {self.unit}; a {word} needs {self.name} > 0")
+        if needs["positive"] and number <= 0:
+            raise ParameterError(f"{self.name} = {number:g} {self.unit}; {needs['positive']}")
         if not self.low <= number <= self.high:
-            raise ParameterError(f"{self.name} = {number:g} {self.unit}; {self._range(word)}")
+            raise ParameterError(f"{self.name} = {number:g} {self.unit}; {needs['range']}")
         return number
+
+    def needs(self):
+        """What a value must be, in words: ``positive``, empty where it may be zero or less, and ``range``."""
+        kind, word = kind_of(self.unit)
+        return {"positive": f"a {word} needs {self.name} > 0" if kind == "inertia" else "", "range": self._range(word)}
 
     def _range(self, word):
         if self.low == 0 and math.isinf(self.high):

@@ -49,7 +49,7 @@ class View {
     this.controls = new Controls(about, (name) => this.press(name))
     this.stage = make("canvas", { class: "hl-stage", ...this.stageRole() })
     this.numbers = new Numbers(about.traces, (open) => this.traces.show(open))
-    this.status = make("p", { class: "hl-status" }, [WAITING])
+    this.status = make("p", { class: "hl-status" }, [this.source.waiting ?? WAITING])
     this.hint = make("p", { class: "hl-hint" })
     this.spoken = new Spoken()
     this.graph = make("canvas", { class: "hl-graph", role: "img", "aria-label": "traces over time; the numbers above give the present values" })
@@ -212,11 +212,13 @@ class View {
   ask() {
     if (this.painting || this.closed) return
     this.painting = true
-    requestAnimationFrame(() => {
+    const paint = () => {
       this.painting = false
       this.paint(performance.now() / 1000)
       if (this.playback.waiting) this.ask()
-    })
+    }
+    if (this.source.inStep) paint() // what it gives within a frame of the screen is seen in that frame
+    else requestAnimationFrame(paint)
   }
 
   paint(now) {

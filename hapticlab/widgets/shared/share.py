@@ -1,0 +1,124 @@
+"""hl.share: a scene as one file, which a browser runs without hapticlab."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...base.arguments import number
+from ...base.shows_itself import ShowsItself
+from ...device.simulated.simulated_paddle import SimulatedPaddle
+from ...errors import PaddleError
+from ...scene.scene import check_scene
+from ..live import SPEEDS
+from ..stage import Stage
+from .page import page
+from .page_data import page_data
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ...base.annotations import File
+    from ...scene.scene import Scene
+
+
+def share(
+    scene: Scene,
+    paddle: SimulatedPaddle,
+    path: File | None = None,
+    *,
+    sliders: Mapping[str, tuple[float, float]] | None = None,
+    time_scale: float = 1.0,
+    picture: Any = None,
+    let_go: bool = False,
+    **compile_options: Any,
+) -> SharedFile:
+    """Write a scene on a simulated paddle as one HTML file that runs in any browser, without Python and without a network.
+
+    The file opens by a double click and shows what :func:`hapticlab.live` shows in a notebook: the picture, sliders, traces,
+    the loop of force over position. The page runs the compiled program of scene, paddle and hand, so that the same hand
+    feels the same forces as by ``paddle.run``, bit for bit; noise alone is drawn by a different generator, see
+    docs/sharing.md. The file never opens a port, so that no motor can move.
+
+    Parameters
+    ----------
+    scene : Scene
+        With values for all its parameters.
+    paddle : SimulatedPaddle
+        Its hand holds the handle, led by whoever opens the file, or ``hl.Hand("pinch")`` where that hand has no spring.
+    path : str or Path, optional
+        The file to write; a file of that name is replaced. By default the name of the scene, in the current folder.
+    sliders, time_scale, picture, let_go
+        As for :func:`hapticlab.live`.
+    **compile_options
+        Of hapticlab.compile: method, substeps, hold, dtype.
+
+    Returns
+    -------
+    SharedFile
+        In a notebook, a link to the file.
+
+    Raises
+    ------
+    PaddleError
+        For a paddle that is not simulated, and a time_scale out of its range.
+    ParameterError
+        For sliders of what cannot be set, and a parameter without a value.
+    OSError
+        Where the file cannot be written.
+
+    Examples
+    --------
+    >>> import hapticlab as hl, tempfile
+    >>> paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
+    >>> shared = hl.share(hl.wall()(k=300, x_o=0.01), paddle, f"{tempfile.mkdtemp()}/wall.html")
+    >>> shared.path.name, shared.bytes < 500_000
+    ('wall.html', True)
+    """
+    check_scene(scene)
+    if not isinstance(paddle, SimulatedPaddle):
+        raise PaddleError(
+            f"paddle = {paddle!r}; a shared file runs on a simulated paddle, since it never opens a port. Give "
+            "hl.SimulatedPaddle(...)"
+        )
+    slowest, fastest = SPEEDS
+    why = "1 is real time, 0.1 slow motion"
+    speed = number("time_scale", time_scale, "", "a shared file", least=slowest, most=fastest, why=why, error=PaddleError)
+    looks = {"sliders": sliders, "speed": speed, "picture": picture, "let_go": let_go}
+    stage = Stage(paddle, scene, clock=time.monotonic, **looks, **compile_options)
+    text = page(page_data(stage))
+    path = Path(_file_name(scene.name) if path is None else path)
+    path.write_text(text, "utf-8")
+    return SharedFile(path, len(text.encode()), stage.source.program.name)
+
+
+@dataclass(frozen=True)
+class SharedFile(ShowsItself):
+    """A file that :func:`share` wrote.
+
+    Attributes
+    ----------
+    path : Path
+    bytes : int
+        Its size.
+    scene : str
+        Name of the scene that it runs.
+    """
+
+    path: Path
+    bytes: int
+    scene: str
+
+    def _repr_html_(self) -> str:
+        return f'<p><a href="{escape(str(self.path))}" target="_blank">{escape(str(self))}</a></p>'
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.scene}, {self.bytes / 1000:.0f} kB, for any browser"
+
+
+def _file_name(scene):
+    stem = "".join(c if c.isalnum() else "_" for c in scene).strip("_") or "scene"
+    return f"{stem}.html"
