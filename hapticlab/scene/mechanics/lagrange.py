@@ -130,9 +130,14 @@ class Mechanics(Typeset):
         return []
 
     def _equations(self):
+        return [*map(typeset, self.shown)]
+
+    @property
+    def shown(self):
+        """What a reader is shown, one ``sp.Eq`` a line: the equations and constraints; of many coordinates the Lagrangian."""
         if len(self.coordinates) > MOST_WORKED_OUT and self.lagrangian is not None:
-            return [f"L = {typeset(self.lagrangian)}"]
-        return [*map(typeset, self.equations), *(f"0 = {typeset(g)}" for g in self.constraints)]
+            return (sp.Eq(sp.Symbol("L"), self.lagrangian, evaluate=False),)
+        return (*self.equations, *(sp.Eq(0, g, evaluate=False) for g in self.constraints))
 
 
 def lagrange(

@@ -34,20 +34,14 @@ class _Printer(LatexPrinter):
     """SymPy's printer with the terms of a sum as a hand writes them."""
 
     def _as_ordered_terms(self, expr, order=None):
-        kinds = {term: _moving(term) for term in expr.args}
-        leading: dict = {}
-        for term in sorted(expr.args, key=lambda term: (kinds[term][2], str(term))):
-            leading.setdefault(kinds[term][:2], term.could_extract_minus_sign())
-        return sorted(expr.args, key=lambda term: (leading[kinds[term][:2]], *kinds[term], str(term)))
+        return in_order(expr)
 
     def _print_Function(self, expr, exp=None):
         name, at = self._deal_with_super_sub(type(expr).__name__), expr.args
-        if not isinstance(expr, (AppliedUndef, x, v)) or len(at) != 1:
+        if not is_named(expr):
             return super()._print_Function(expr, exp)
         if at[0] != t:
-            lag = lag_of(expr) if at[0].has(n) else None
-            written = f"n{-lag:+d}" if lag else "n"
-            name += f"({written})" if lag is not None else f"({self._print(at[0])})"
+            name += f"({sample_of(expr) or self._print(at[0])})"
         return f"{name}^{{{exp}}}" if exp else name
 
     def _print_Derivative(self, expr):
@@ -60,10 +54,33 @@ class _Printer(LatexPrinter):
 
 def _dotted(printer, expr):
     """A rate or an acceleration of a coordinate with its dots, or None for other derivatives."""
+    return rf"\{'d' * dots(expr)}ot{{{printer._print(expr.expr)}}}" if dots(expr) else None
+
+
+def dots(expr):
+    """Return how many dots a derivative has over its coordinate, 1 or 2, or 0 where it is another derivative."""
     order = dict(expr.variable_count).get(t)
-    if isinstance(expr.expr, AppliedUndef) and expr.expr.args == (t,) and order in (1, 2):
-        return rf"\{'d' * order}ot{{{printer._print(expr.expr)}}}"
-    return None
+    return order if isinstance(expr.expr, AppliedUndef) and expr.expr.args == (t,) and order in (1, 2) else 0
+
+
+def is_named(expr):
+    """Tell whether a function is a coordinate, a signal or the handle, which have names of their own."""
+    return isinstance(expr, (AppliedUndef, x, v)) and len(expr.args) == 1
+
+
+def sample_of(expr):
+    """Return which sample a signal is taken at, such as "n-1", or nothing where it is none."""
+    lag = lag_of(expr) if expr.args[0].has(n) else None
+    return "" if lag is None else f"n{-lag:+d}" if lag else "n"
+
+
+def in_order(expr):
+    """Return the terms of a sum as a hand writes them."""
+    kinds = {term: _moving(term) for term in expr.args}
+    leading: dict = {}
+    for term in sorted(expr.args, key=lambda term: (kinds[term][2], str(term))):
+        leading.setdefault(kinds[term][:2], term.could_extract_minus_sign())
+    return sorted(expr.args, key=lambda term: (leading[kinds[term][:2]], *kinds[term], str(term)))
 
 
 def _moving(term):
