@@ -8,7 +8,7 @@ from functools import lru_cache
 
 _LENGTH, _MASS, _TIME, _CURRENT = "[length]", "[mass]", "[time]", "[current]"
 #: unit -> (size in SI units, exponents of the SI base); sizes are exact, so that kg is 1 and not a rounded 1000 * 0.001
-_UNITS = {
+UNITS = {
     "m": (Fraction(1), {_LENGTH: 1}),
     "g": (Fraction(1, 1000), {_MASS: 1}),
     "s": (Fraction(1), {_TIME: 1}),
@@ -21,11 +21,11 @@ _UNITS = {
     "V": (Fraction(1), {_MASS: 1, _LENGTH: 2, _TIME: -3, _CURRENT: -1}),
 }
 #: prefix -> power of ten; the two signs for micro are different characters that look alike
-_PREFIXES = {"": 0, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "\u00b5": -6, "\u03bc": -6, "n": -9}
+PREFIXES = {"": 0, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "\u00b5": -6, "\u03bc": -6, "n": -9}
 _SIZES: dict[str, tuple[Fraction, dict]] = {
     prefix + name: (size * Fraction(10) ** power, exponents)
-    for name, (size, exponents) in _UNITS.items()
-    for prefix, power in _PREFIXES.items()
+    for name, (size, exponents) in UNITS.items()
+    for prefix, power in PREFIXES.items()
 } | {"1": (Fraction(1), {}), "rad": (Fraction(1), {}), "deg": (Fraction(math.pi / 180), {})}
 #: a unit and its power, as m, m^2, s**-1 or m^1.5, and what joins two of them
 _FACTOR = re.compile(r"([A-Za-z\u00b5\u03bc]+|1)(?:(?:\^|\*\*)(-?\d+(?:\.\d+)?))?")

@@ -25,7 +25,7 @@ def equations(scene):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> equations(hl.library.detents())[0][:72]
+    >>> equations(hl.library.detents())[0][:71]
     '<math display="block"><mrow><msub><mi>F</mi><mi>e</mi></msub><mo>=</mo>'
     """
     force = sp.Eq(sp.Symbol("F_e"), scene.force, evaluate=False)

@@ -1,0 +1,74 @@
+// A record as a file that hl.records.Telemetry.load reads: what Telemetry.save writes, a zip of NumPy arrays, not compressed.
+
+const FLAG_COLUMNS = ["saturated", "gap", "overrun"]
+const OWN_COLUMNS = ["t", "x", "v", "F"]
+
+// Return the bytes of a log, {columns, parameters, changes, T, fault}. told: {units, scene, paddle, delay, sensor_delay,
+// force_max} of the scene on its paddle.
+function recordFile({ columns, parameters, changes, T, fault }, told) {
+  const order = Object.keys(columns).filter((name) => !OWN_COLUMNS.includes(name))
+  const { units, scene, paddle, delay, sensor_delay } = told
+  const about = { order, units, parameters, changes, scene, paddle, T, delay, sensor_delay, every: 1, fault: fault ?? null }
+  const limited = columns.F.map((force) => Number(told.force_max !== null && Math.abs(force) >= told.force_max))
+  const flags = FLAG_COLUMNS.map((name) => [name, npy("|b1", Uint8Array.from(limited, (on) => (name === "saturated" ? on : 0)))])
+  const numbers = [...OWN_COLUMNS.map((name) => [name, name]), ...order.map((name) => [`channel.${name}`, name])]
+  return zipped([
+    ["about", npyText(JSON.stringify(about))], ...numbers.map(([entry, name]) => [entry, npy("<f8", Float64Array.from(columns[name]))]), ...flags,
+  ].map(([name, bytes]) => [`${name}.npy`, bytes])) // prettier-ignore
+}
+
+// An array of one dimension as NumPy writes it (numpy.lib.format, version 1.0).
+function npy(type, array, shape = `(${array.length},)`) {
+  const words = `{'descr': '${type}', 'fortran_order': False, 'shape': ${shape}, }`
+  const head = words.padEnd(Math.ceil((words.length + 11) / 64) * 64 - 11) + "\n"
+  const prefix = Uint8Array.from([0x93, ...[..."NUMPY"].map((letter) => letter.charCodeAt(0)), 1, 0, head.length & 255, head.length >> 8])
+  return together([prefix, new TextEncoder().encode(head), new Uint8Array(array.buffer)])
+}
+
+function npyText(text) {
+  const letters = Uint32Array.from(text, (letter) => letter.codePointAt(0))
+  return npy(`<U${letters.length}`, letters, "()")
+}
+
+// A zip of entries [name, bytes] that are stored as they are (PKWARE APPNOTE 6.3, sections 4.3.7, 4.3.12 and 4.3.16).
+function zipped(entries) {
+  const [parts, index] = [[], []]
+  let at = 0
+  for (const [name, bytes] of entries) {
+    const letters = new TextEncoder().encode(name)
+    const sizes = [[crc32(bytes), 4], [bytes.length, 4], [bytes.length, 4], [letters.length, 2]]
+    const file = [[20, 2], [0x800, 2], [0, 2], [0, 2], [0x21, 2], ...sizes, [0, 2]] // names in UTF-8, stored, 1 January 1980
+    const local = together([little([[0x04034b50, 4], ...file]), letters, bytes])
+    index.push(little([[0x02014b50, 4], [20, 2], ...file, [0, 2], [0, 2], [0, 2], [0, 4], [at, 4]]), letters)
+    parts.push(local)
+    at += local.length
+  }
+  const directory = together(index)
+  const count = entries.length
+  return together([...parts, directory, little([[0x06054b50, 4], [0, 2], [0, 2], [count, 2], [count, 2], [directory.length, 4], [at, 4], [0, 2]])])
+}
+
+// Whole numbers, each in so many bytes, the lowest first.
+function little(numbers) {
+  return Uint8Array.from(numbers.flatMap(([number, bytes]) => Array.from({ length: bytes }, (_, k) => (number / 2 ** (8 * k)) & 255)))
+}
+
+function together(parts) {
+  const whole = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0))
+  let at = 0
+  for (const part of parts) {
+    whole.set(part, at)
+    at += part.length
+  }
+  return whole
+}
+
+function crc32(bytes) {
+  const table = Uint32Array.from({ length: 256 }, (_, k) => {
+    for (let bit = 0; bit < 8; bit++) k = k & 1 ? (k >>> 1) ^ 0xedb88320 : k >>> 1
+    return k
+  })
+  let crc = 0xffffffff
+  for (const byte of bytes) crc = table[(crc ^ byte) & 255] ^ (crc >>> 8)
+  return (crc ^ 0xffffffff) >>> 0
+}
