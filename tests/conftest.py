@@ -1,15 +1,22 @@
-"""What holds for every test: which always run, a limit, no event loop left behind, in CI no skip; and where the seconds went."""
+"""What holds for every test: which always run, a limit, no event loop left behind, in CI no skip; where the seconds went.
+
+And a Python without threads, as in a browser, for what has to work in both.
+"""
 
 import asyncio
 import faulthandler
 import json
 import os
 import sys
+import threading
 from collections import Counter
+from contextlib import suppress
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 import pytest
+
+from hapticlab.device import turns
 
 # before NumPy is loaded: on small matrices a second thread costs four times the time of one, and processes share the cores
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -113,3 +120,69 @@ def pytest_terminal_summary(terminalreporter, config):
     terminalreporter.section(f"seconds by folder, in all of {file.name}")
     for folder, spent in [*seconds.most_common(), ("all", seconds.total())]:
         terminalreporter.write_line(f"{spent:8.1f}  {folder}")
+
+
+class Threads:
+    """Work that takes turns does so in threads of its own."""
+
+    def event(self):
+        return threading.Event()
+
+
+class OneThread:
+    """It does so on the event loop, which runs while a test waits; as in a browser, code that waits for nothing finds it too."""
+
+    def __init__(self):
+        self._loop = asyncio.new_event_loop()
+        asyncio._set_running_loop(self._loop)
+
+    def event(self):
+        return LoopEvent(self)
+
+    def run(self, work):
+        """Return what a coroutine returns; the turns of everything else come meanwhile."""
+        asyncio._set_running_loop(None)
+        try:
+            return self._loop.run_until_complete(work)
+        finally:
+            asyncio._set_running_loop(self._loop)
+
+    def close(self):
+        asyncio._set_running_loop(None)
+        left = asyncio.all_tasks(self._loop)
+        for task in left:
+            task.cancel()
+        if left:
+            self._loop.run_until_complete(asyncio.wait(left))
+        self._loop.close()
+
+
+class LoopEvent(asyncio.Event):
+    """As an event of threads, for a test in which all is one thread."""
+
+    def __init__(self, form):
+        super().__init__()
+        self._form = form
+
+    def wait(self, timeout):
+        async def waited():
+            with suppress(TimeoutError):
+                await asyncio.wait_for(asyncio.Event.wait(self), timeout)
+            return self.is_set()
+
+        return self._form.run(waited())
+
+
+@pytest.fixture
+def one_thread(monkeypatch):
+    """A Python without threads, as in a browser."""
+    monkeypatch.setattr(turns, "is_in_browser", lambda: True)
+    form = OneThread()
+    yield form
+    form.close()
+
+
+@pytest.fixture(params=["threads", "one thread"])
+def both(request):
+    """Each form of work that takes turns; what waits is an ``event()`` of it."""
+    return Threads() if request.param == "threads" else request.getfixturevalue("one_thread")

@@ -1,4 +1,4 @@
-"""Where IPython runs a program, and what is shown there: the only module that opens IPython."""
+"""Where a program runs: under IPython, and what is shown there; in a browser. The only module that opens IPython."""
 
 from __future__ import annotations
 
@@ -14,6 +14,11 @@ def in_a_notebook() -> bool:
     from IPython import get_ipython
 
     return get_ipython() is not None
+
+
+def is_in_browser() -> bool:
+    """Whether a browser runs this Python (Pyodide): one thread, and no other process, serial port or socket."""
+    return sys.platform == "emscripten"
 
 
 def display(data: Mapping[str, Any], metadata: Mapping[str, Any] | None = None) -> None:

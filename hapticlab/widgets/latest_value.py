@@ -2,9 +2,11 @@
 
 import threading
 
+from ..device.turns import begin
+
 
 class Latest:
-    """A function run in a thread, for the newest value asked for.
+    """A function run beside everything else, for the newest value asked for.
 
     Parameters
     ----------
@@ -26,31 +28,30 @@ class Latest:
 
     def __init__(self, work, failed):
         self._work, self._failed = work, failed
-        self._wanted, self._busy = [], False
-        self._changed = threading.Condition()
+        self._wanted, self._turns = [], None
+        self._door = threading.Lock()
 
     def ask(self, value):
         """Ask for a value; one that is waiting to be worked on is dropped."""
-        with self._changed:
+        with self._door:
             self._wanted = [value]
-            if not self._busy:
-                self._busy = True
-                threading.Thread(target=self._loop, daemon=True).start()
+            if self._turns is None:
+                self._turns = begin(self._work_off(), "hapticlab picture")
 
     def wait(self, timeout=None):
         """Wait until nothing is left to do; return whether that came to pass in time [s]."""
-        with self._changed:
-            return self._changed.wait_for(lambda: not self._busy, timeout)
+        turns = self._turns
+        return turns is None or turns.join(timeout)
 
-    def _loop(self):
+    def _work_off(self):
         while True:
-            with self._changed:
+            with self._door:
                 if not self._wanted:
-                    self._busy = False
-                    self._changed.notify_all()
+                    self._turns = None
                     return
                 value = self._wanted.pop()
             try:
                 self._work(value)
-            except Exception as error:  # shown where the sliders are; a thread has nobody else to tell
+            except Exception as error:  # shown where the sliders are; nobody else can be told
                 self._failed(error)
+            yield 0.0

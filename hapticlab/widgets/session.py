@@ -1,10 +1,11 @@
-"""A scene that runs while somebody looks at it: inputs of a front end go in, frames come out, in a thread of its own."""
+"""A scene that runs while somebody looks at it: inputs of a front end go in, frames come out, beside whatever cells do."""
 
 import math
 import threading
 import time
 from collections import deque
 
+from ..device.turns import begin, has_threads
 from ..errors import PaddleError
 from .stage import Stage
 
@@ -16,9 +17,13 @@ RATE, SLOWEST, FASTEST = 60.0, 50.0, 65.0
 SOONEST = 4e-3
 #: a front end that says nothing for so long is gone [s]
 SILENCE = 2.0
+#: where its words wait for the cell that runs, a simulation goes on for so long without them [s]
+LONG_SILENCE = 60.0
 #: a board's motor starts only where a view was heard without such a gap for so long [s]: words that waited come at once
 GAP, STEADY = 1.0, 0.5
 ENDED = "This view has ended; run its cell again."
+#: where there are no threads: what a page says waits for the cell that runs, and frames go on where that cell awaits
+A_CELL_RUNS = "A cell is running, so this view hears the pointer, keys and buttons only after the cell"
 
 
 class Session:
@@ -41,7 +46,7 @@ class Session:
     clock : callable
         Seconds, as time.monotonic gives them.
     in_thread : bool
-        False leaves :meth:`turn` to the caller.
+        False leaves :meth:`turn` to the caller; else a thread does it or, where there are none, the event loop.
     **options
         Of hapticlab.compile.
     """
@@ -55,11 +60,12 @@ class Session:
         self.stage = Stage(paddle, scene, clock=clock, **looks, **options)
         self.scene, self.spans, self.picture = self.stage.scene, self.stage.spans, self.stage.picture
         self.source, self.motion, self.description = self.stage.source, self.stage.motion, self.stage.description
-        self._lock, self._door, self._closed = threading.RLock(), threading.Lock(), threading.Event()
-        self._moved = threading.Event()  # a hand, since the turn before; or all has to end
-        self._views, self._thread, self._sink = {}, None, None
+        self._lock, self._door, self._closed = threading.RLock(), threading.Lock(), False
+        self._moved = False  # a hand, since the turn before; or all has to end
+        self._views, self._turns, self._sink = {}, None, None
         self._said, self._wanted = deque(maxlen=1000), 0.0  # nobody may be there to do what is said
         self._heard = self._steady = -math.inf  # when a view was heard last, and since when without a gap
+        self._turned = math.inf  # when the last turn ended
         self._silent, self._end = None, ENDED  # since when, where silence ended it; and the words of the end
 
     # --- what a front end says, from whatever thread: stored, and done in the next turn
@@ -75,21 +81,26 @@ class Session:
 
     def alive(self, view=""):
         """Note that a view is still there."""
-        if not self._closed.is_set():
-            self._views[view] = now = self.clock()
+        if not self._closed:
+            now = self.clock()
+            if self._views and now - self._heard > SILENCE and not has_threads() and self.source.kind == "board":
+                # the motor of a board goes off after silence, also where a cell took the turn that would have noticed it
+                self._silent = self._heard
+                self._said.append(("press", ("pause", now)))
+            self._views[view] = now
             self._steady = self._steady if now - self._heard <= GAP else now
             self._heard = now
-            self._keep_a_thread()
+            self._keep_turning()
 
     def gone(self, view=""):
-        """Note that a view closed: the last one ends the thread, and a board's motor goes off."""
+        """Note that a view closed: with the last one the turns end, and a board's motor goes off."""
         self._views.pop(view, None)
         self._heard = self._heard if self._views else -math.inf
 
     def intend(self, x):
         """Say where the hand means to be [m]; the next frame comes at once."""
         self._wanted = float(x)
-        self._moved.set()
+        self._wake()
 
     def hold(self, held):
         """Take the handle, or let go of it."""
@@ -125,7 +136,7 @@ class Session:
     def pressed(self, name, *given):
         """Do what a press of this name asks for."""
         with self._lock:
-            if self._closed.is_set() and name not in ("pause", "stop"):
+            if self._closed and name not in ("pause", "stop"):
                 raise PaddleError(f"{name}: {self._end[0].lower()}{self._end[1:]}")
             getattr(self.stage, name)(*given)
 
@@ -138,7 +149,7 @@ class Session:
     def status(self):
         """One or two sentences about what goes on."""
         with self._lock:
-            if self._closed.is_set():
+            if self._closed:
                 return self._end
             return self.stage.words() if self._views else f"Not on view, so nothing moves. {self.stage.note}".rstrip()
 
@@ -159,10 +170,10 @@ class Session:
         return bool(self._views)
 
     def close(self):
-        """Ask for the end: the thread stops within a turn, and a board's motor with it. Waits for nothing."""
-        self._closed.set()
+        """Ask for the end: it comes with the next turn, and a board's motor stops with it. Waits for nothing."""
+        self._closed = True
         self._views.clear()
-        self._moved.set()
+        self._wake()
 
     def end(self):
         """Close, and wait until all stands still."""
@@ -170,52 +181,71 @@ class Session:
         with self._lock:
             self.stage.end()
 
-    # --- the thread
+    # --- turns
 
-    def _keep_a_thread(self):
+    @property
+    def _hears_between_cells(self):
+        """Whether what a page says waits for the cell that runs, as in a browser, and nothing but time can be lost meanwhile."""
+        return not has_threads() and self.source.kind == "simulated"
+
+    @property
+    def _longest_silence(self):
+        return LONG_SILENCE if self._hears_between_cells else SILENCE
+
+    def _keep_turning(self):
         with self._door:
-            if self._in_thread and self._thread is None:
-                self._thread = threading.Thread(target=self._run, name="hapticlab live view", daemon=True)
-                self._thread.start()
+            if self._in_thread and self._turns is None:
+                self._turned = math.inf
+                self._turns = begin(self._run(), "hapticlab live view")
 
     def _run(self):
         due, led = self.clock(), False
         try:
-            while self.turn() or not self._thread_may_end():
-                due, led = self._wait(due, led)
+            while self.turn() or not self._turns_may_end():
+                due, led = yield from self._wait(due, led)
         finally:
             with self._lock:
-                (self.stage.end if self._closed.is_set() else self.stage.rest)()
+                (self.stage.end if self._closed else self.stage.rest)()
             with self._door:
-                self._thread = None if self._thread is threading.current_thread() else self._thread
-        if self._closed.is_set():
+                self._turns = None if self._turns is not None and self._turns.is_current() else self._turns
+        if self._closed:
             self._show(self.stage.last_frame(self._end))
 
     def _wait(self, due, led):
         """Wait after a turn that was due then, led by a hand or not, for the next; return when that is, and whether led."""
-        self._closed.wait(due + (1 / FASTEST if led else SOONEST) - self.clock())
-        following = due + 1 / (SLOWEST if led else RATE)
-        led = self._moved.wait(following - self.clock())
-        self._moved.clear()
+        soonest, following = due + (1 / FASTEST if led else SOONEST), due + 1 / (SLOWEST if led else RATE)
+        yield 0.0  # others go first, also where turns take all the time
+        while not self._closed and (left := soonest - self.clock()) > 0:
+            yield left
+        while not self._moved and (left := following - self.clock()) > 0:
+            yield left
+        led, self._moved = self._moved, False
         return (self.clock() if led else max(following, self.clock())), led
 
-    def _thread_may_end(self):
-        with self._door:  # a view that opens now starts a thread of its own
+    def _wake(self):
+        """Let the next turn come as soon as it may."""
+        self._moved, turns = True, self._turns
+        if turns is not None:
+            turns.wake()
+
+    def _turns_may_end(self):
+        with self._door:  # a view that opens now begins turns of its own
             if not self._views:
-                self._thread = None
+                self._turns = None
             return not self._views
 
     def turn(self):
         """Do all that is due, and give one frame to the sink; return whether anybody looks."""
         with self._lock:
             try:
+                self._tell_of_a_cell()
                 frame = self._turn() if self._somebody_looks() else self._rest()
             except Exception as problem:  # a fault of the view's own: it ends, in words, with the motor off
                 self._end = f"This view has ended: {type(problem).__name__}: {problem}. Run its cell again."
                 self.close()
                 self.stage.end()
                 frame = self.stage.last_frame(self._end)
-            looks = bool(self._views)
+            looks, self._turned = bool(self._views), self.clock()
         if frame is not None:
             self._show(frame)
         return looks
@@ -231,6 +261,17 @@ class Session:
         self._follow_caught()
         return self.stage.frame(rows, self._wanted)
 
+    def _tell_of_a_cell(self):
+        """Say what a cell does to a simulation on view where there are no threads: it stands still, or hears nobody."""
+        if not self._hears_between_cells:
+            return
+        now = self.clock()
+        if now - self._turned > GAP:
+            self.motion.wake()  # what passed is not made up for
+            self.stage.tell(f"A cell computed for {now - self._turned:.1f} s: {self.stage.stopped}")
+        elif now - self._heard > GAP and not self.stage.note:
+            self.stage.tell(A_CELL_RUNS)
+
     def _follow_caught(self):
         """Let the hand begin where the stage has put it."""
         if self.stage.caught is not None:
@@ -240,7 +281,7 @@ class Session:
         """Forget views that are silent; return whether any is left."""
         now = self.clock()
         for view, heard in list(self._views.items()):
-            if now - heard > SILENCE:
+            if now - heard > self._longest_silence:
                 self._views.pop(view, None)
                 self._silent = None if self._views else heard
         return bool(self._views)
@@ -251,7 +292,7 @@ class Session:
         self.stage.rest()
         self._said.clear()
         if was_awake and self._silent is not None:
-            return self.stage.last_frame(f"No word from the page for {SILENCE:g} s: {self.stage.stopped}.")
+            return self.stage.last_frame(f"No word from the page for {self._longest_silence:g} s: {self.stage.stopped}.")
         return None
 
     def _show(self, frame):

@@ -4,7 +4,13 @@ from ..device.board.serial_paddle import SerialPaddle
 from ..device.board.streaming import Streaming
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..device.simulated.stepping import Stepping
+from ..device.turns import has_threads
 from ..errors import PaddleError
+
+ONE_THREAD = (
+    "In this browser a view and a cell take turns: while a cell computes the view stands still, and while a cell awaits the "
+    "view goes on but hears nothing from you."
+)
 
 
 def source_of(paddle, scene, **options):
@@ -29,7 +35,12 @@ def overview_words(source, scene, along):
 
 
 def help_words(source):
-    """Say what moves a handle on view."""
+    """Say what moves a handle on view, and what a cell does to it where there are no threads."""
+    words = _moved_by_words(source)
+    return words if has_threads() else f"{words} {ONE_THREAD}"
+
+
+def _moved_by_words(source):
     if source.kind == "board":
         return "Start switches the motor on: hold the handle. The motor goes off with Stop, and when this view closes."
     hand = source.paddle.hand

@@ -232,8 +232,8 @@ def test_it_stops_with_its_last_view_and_when_its_page_is_left(page):
     page.evaluate("() => { window.jupyterapp.shell.currentWidget.content.activeCellIndex = 1 }")
     command(page, "notebook:clear-cell-output")
     page.wait_for_selector(STAGE, state="detached")
-    ask(page, "view._session._thread and view._session._thread.join(5)")
-    assert ask(page, "print(view._session.on_view, view._session.motion.running, view._session._thread)") == "False False None"
+    ask(page, "view._session._turns and view._session._turns.join(5)")
+    assert ask(page, "print(view._session.on_view, view._session.motion.running, view._session._turns)") == "False False None"
 
 
 def test_a_kernel_that_was_restarted_is_told_and_nothing_can_be_pressed(page):

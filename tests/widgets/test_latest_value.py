@@ -24,7 +24,30 @@ def test_values_in_between_are_dropped():
     assert done == [0, 499]
 
 
-def test_it_begins_again_and_survives_an_error():
+def test_without_threads_the_last_value_alone_is_worked_on(one_thread):
+    done = []
+    latest = Latest(done.append, done.append)
+    for value in range(500):
+        latest.ask(value)
+    assert latest.wait(10) and done == [499]
+
+
+def test_a_value_that_comes_while_one_is_worked_on_is_next(both):
+    done, enough = [], both.event()
+
+    def work(value):
+        done.append(value)
+        if value < 3:
+            latest.ask(value + 1)
+        else:
+            enough.set()
+
+    latest = Latest(work, done.append)
+    latest.ask(0)
+    assert enough.wait(20) and done == [0, 1, 2, 3]
+
+
+def test_it_begins_again_and_survives_an_error(both):
     done, failures = [], []
 
     def work(value):

@@ -4,6 +4,7 @@ import base64
 import re
 import sys
 import threading
+import time
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,7 +16,7 @@ from hapticlab.device.simulated import stepping
 from hapticlab.widgets.browser_view import _canvas
 from hapticlab.widgets.frame import Frame
 from hapticlab.widgets.pace import LONGEST
-from hapticlab.widgets.session import SILENCE, Session
+from hapticlab.widgets.session import A_CELL_RUNS, SILENCE, Session
 from hapticlab.widgets.stage import NOTE
 from hapticlab.widgets.status_words import chatter_words
 from hapticlab.widgets.traces import Traces
@@ -666,9 +667,9 @@ def test_a_view_that_cannot_be_reached_is_gone():
     assert not stage.session.on_view
 
 
-def wait_for_frames(session, count):
-    """Run a session in its thread until so many frames came; return them."""
-    frames, enough = [], threading.Event()
+def wait_for_frames(session, count, both):
+    """Run a session until so many frames came; return them."""
+    frames, enough = [], both.event()
 
     def sink(frame):
         frames.append(frame)
@@ -682,39 +683,37 @@ def wait_for_frames(session, count):
     return frames
 
 
-def test_its_thread_runs_with_a_view_and_ends_with_it():
+def test_its_turns_come_with_a_view_and_end_with_it(both):
     view = hl.live(PADDLE, WALL)
-    frames = wait_for_frames(view._session, 5)
+    frames = wait_for_frames(view._session, 5, both)
     assert all(isinstance(frame, Frame) and frame.rows.dtype == np.float32 for frame in frames)
     assert "kind" not in frames[0].flags
     session = view._session
-    thread = session._thread
+    turns = session._turns
     session.connect(None)
     session.gone("page")
-    thread.join(20)
-    assert not thread.is_alive()
-    frames = wait_for_frames(session, 2)  # opened again
-    thread = session._thread
+    assert turns.join(20)
+    frames = wait_for_frames(session, 2, both)  # opened again
+    turns = session._turns
     view.close()
-    thread.join(20)
-    assert not thread.is_alive()
+    assert turns.join(20)
     assert frames[-1].status == "This view has ended; run its cell again."
     assert not frames[-1].flags["running"]
     session.alive("page")  # says a page that is still open
-    assert session._thread is None
+    assert session._turns is None
 
 
-def test_a_view_that_nobody_keeps_ends_its_thread():
+def test_a_view_that_nobody_keeps_ends_its_turns(both):
     view = hl.live(PADDLE, WALL)
     front = view._repr_mimebundle_()
-    wait_for_frames(view._session, 2)
-    thread = view._session._thread
+    wait_for_frames(view._session, 2, both)
+    turns = view._session._turns
     del view, front
-    thread.join(20)
-    assert not thread.is_alive()
+    assert turns.join(20)
 
 
-def test_many_threads_may_say_what_they_like():
+@pytest.mark.parametrize("both", ["threads"], indirect=True)
+def test_many_threads_may_say_what_they_like(both):
     view = hl.live(PADDLE, WALL)
     session, failed = view._session, []
 
@@ -733,11 +732,67 @@ def test_many_threads_may_say_what_they_like():
     talkers = [threading.Thread(target=talk, args=(k,)) for k in range(3)]
     for talker in talkers:
         talker.start()
-    wait_for_frames(session, 3)
+    wait_for_frames(session, 3, both)
     for talker in talkers:
         talker.join(20)
     view.close()
     assert not failed
+
+
+# --- where a page's words wait for the cell that runs, as in a browser
+
+
+def test_without_threads_a_simulation_goes_on_while_a_cell_awaits_and_says_that_it_hears_nothing(one_thread):
+    stage = Stage().open()
+    stage.go(0.5)
+    assert "hears the pointer" not in stage.session.status
+    before = stage.session.source.ticks
+    for _ in range(5 * 60):  # the cell lets turns through, and no word of the page
+        stage.now += 1 / 60
+        assert stage.session.turn()
+    assert stage.session.source.ticks - before == pytest.approx(5 / T, abs=20)
+    assert stage.session.status == "Running, not in contact. " + A_CELL_RUNS + "."
+    stage.go(NOTE + 0.5)
+    assert stage.session.status == "Running, not in contact."
+
+
+def test_without_threads_a_page_that_says_nothing_for_a_minute_is_gone(one_thread):
+    stage = Stage().open()
+    stage.go(0.2)
+    for _ in range(61 * 4):
+        stage.now += 1 / 4
+        looks = stage.session.turn()
+    assert not looks and stage.frames[-1].status == "No word from the page for 60 s: time stood still."
+
+
+def test_without_threads_a_cell_that_computed_is_told_and_its_time_is_not_made_up_for(one_thread):
+    stage = Stage().open()
+    stage.go(0.5)
+    before = stage.session.source.ticks
+    stage.now += 5.0  # no turn comes
+    stage.go(0.1)
+    assert stage.session.source.ticks - before <= 110
+    assert "A cell computed for 5.0 s: time stood still." in stage.session.status
+    assert "fell behind" not in stage.session.status and stage.flags["running"]
+
+
+def test_time_without_a_view_is_no_cell(one_thread):
+    view = hl.live(PADDLE, WALL)
+    session = view._session
+    wait_for_frames(session, 2, one_thread)
+    session.connect(None)
+    session.gone("page")
+    assert session._turns.join(20)
+    session.clock = lambda: time.monotonic() + 30.0
+    wait_for_frames(session, 2, one_thread)
+    assert "A cell computed" not in session.status
+
+
+def test_a_view_says_beforehand_what_a_cell_does_to_it(one_thread, monkeypatch):
+    told = Session(PADDLE, WALL, in_thread=False).description()["help"]
+    assert "while a cell computes the view stands still" in told
+    monkeypatch.undo()
+    assert "cell" not in Session(PADDLE, WALL, in_thread=False).description()["help"]
 
 
 # --- what a lab asks of it
@@ -766,10 +821,10 @@ def test_a_rehearsal_of_ones_own_begins_where_it_begins():
     assert view.rehearsal.x[0] == np.float32(0.012)
 
 
-def test_a_record_comes_before_a_rehearsal():
+def test_a_record_comes_before_a_rehearsal(both):
     view = hl.live(PADDLE, WALL, rehearsal=hl.people.Rehearsal(duration=0.1))
     view.record()
-    wait_for_frames(view._session, 4)
+    wait_for_frames(view._session, 4, both)
     view.close()
     view.stop_recording()
     assert "intent" in view.log.columns and view.log is not view.rehearsal

@@ -380,11 +380,26 @@ def test_by_the_clock_on_the_wall_in_its_own_thread():
         session.connect(sink)
         session.ready("page")
         assert pushed.wait(20)
-        thread = session._thread
+        thread = session._turns
         session.connect(None)
         session.gone("page")
         thread.join(20)
         assert board.state()["state"] != STATES["RUN"]
+
+
+def test_without_threads_a_cell_that_takes_the_turn_is_a_silence_too(board, one_thread):
+    """The page's words come before the turn that would have noticed that there were none."""
+    stage = Stage(board).press("start").go(0.2)
+    assert stage.is_running
+    stage.now += SILENCE + 0.5
+    stage.session.alive("page")
+    stage.session.turn()
+    assert not stage.is_running
+    assert "The notebook was silent for 2.5 s: the motor went off" in stage.session.status
+    stage.go(1.0)
+    assert not stage.is_running
+    stage.press("start").go(0.2)
+    assert stage.is_running
 
 
 def test_a_view_that_nobody_keeps_switches_its_motor_off():
@@ -402,7 +417,7 @@ def test_a_view_that_nobody_keeps_switches_its_motor_off():
         session.connect(sink)
         session.ready("page")
         assert on.wait(20)
-        thread = session._thread
+        thread = session._turns
         del view
         thread.join(20)
         assert board.state()["state"] != STATES["RUN"]

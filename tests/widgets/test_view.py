@@ -31,7 +31,8 @@ def view(maps):
     return made
 
 
-def test_the_map_follows_its_sliders(view):
+@pytest.mark.always("threads")
+def test_the_map_follows_its_sliders(both, view):
     np.testing.assert_array_equal(view.map.regions, hl.stability.wall_map(PADDLE, **SMALL).regions)
     first = bytes(view.image.value)
     view.set(b=0.3, hand_b=1.5, coulomb=0.06)

@@ -5,12 +5,12 @@ import ctypes
 import functools
 import math
 import os
-import sys
 import tempfile
 import weakref
 
 import numpy as np
 
+from ...base.in_notebook import is_in_browser
 from ...errors import EngineMissingError, ProgramError
 from ..ir.cache import Shared
 from .wasm_emit import at_once, emit
@@ -148,11 +148,6 @@ class _Instance:
                 f"a run needs {size / 2**30:.3g} GiB; the memory of WebAssembly has at most 4 GiB, if the computer has as much "
                 f'({refused}): run fewer lanes, or keep outputs more often, or use engine="interpreter"'
             ) from refused
-
-
-def is_in_browser():
-    """True where Python itself is a WebAssembly module, as in Pyodide."""
-    return sys.platform == "emscripten"
 
 
 def open_wasm():
