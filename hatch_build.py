@@ -4,6 +4,7 @@
 by ziglang, which is then asked for as a build requirement. An editable install builds it on first use instead.
 
 HAPTICLAB_TARGETS=all builds for every target by ziglang, into one wheel for all: a release.
+HAPTICLAB_TARGETS=emscripten-wasm32-32, or another name of a target, builds for that target alone.
 HAPTICLAB_TARGETS=none ships no library.
 """
 
@@ -43,9 +44,9 @@ class Library(BuildHookInterface):
         chosen = os.environ.get("HAPTICLAB_TARGETS", "")
         editable = "get_requires_for_build_editable" in sys.argv  # as pip calls it; elsewhere ziglang comes for nothing
         has_wheel = sys.platform in ("linux", "darwin", "win32") and platform.machine().lower() in ZIGLANG_MACHINES
-        if chosen == "none" or not has_wheel or (editable and chosen != "all"):
+        if chosen == "none" or not has_wheel or (editable and not chosen):
             return []
-        return [] if chosen != "all" and self._system_compiler_works() else [ZIGLANG]
+        return [] if not chosen and self._system_compiler_works() else [ZIGLANG]
 
     def _system_compiler_works(self):
         """A compiler may be there without the headers of its C library: so it is tried."""
@@ -59,24 +60,25 @@ class Library(BuildHookInterface):
 
     def initialize(self, version, build_data):
         chosen = os.environ.get("HAPTICLAB_TARGETS", "")
-        if chosen not in ("", "all", "none"):
-            raise ValueError(f"HAPTICLAB_TARGETS={chosen}; it is all, none, or not set for this computer alone")
+        if chosen not in ("", "all", "none", *toolchain.TARGETS):
+            names = ", ".join(toolchain.TARGETS)
+            raise ValueError(f"HAPTICLAB_TARGETS={chosen}; it is all, none, one of {names}, or not set for this computer alone")
         if version == "editable" or chosen == "none":
             return
         self.folder = tempfile.mkdtemp()
-        targets = list(toolchain.TARGETS) if chosen == "all" else [toolchain.running_target()]
+        targets = list(toolchain.TARGETS) if chosen == "all" else [chosen or toolchain.running_target()]
         libraries = []
         for target in targets:
             try:
                 libraries += self._build(target)
             except toolchain.CompileError as error:
-                if chosen == "all":  # a release has them all
+                if chosen:  # asked for
                     raise
                 self.app.display_warning(f"The firmware did not compile; this wheel is without its library.\n{error}")
                 return
         for path in libraries:
             build_data["force_include"][str(path)] = f"hapticlab/prebuilt/{path.parent.name}/{path.name}"
-        if chosen != "all":
+        if not chosen:
             build_data["pure_python"] = False
             build_data["tag"] = f"py3-none-{platform_tag(targets[0], libraries)}"
 

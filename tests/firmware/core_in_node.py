@@ -16,19 +16,11 @@ from hapticlab.device.board.host_board import HostBoard
 
 WEB = FIRMWARE / "prebuilt" / "web.wasm"
 HERE = Path(__file__).resolve().parent / "web"
-IN_PYODIDE = HERE.parent / "pyodide"
 
 
 def missing():
     """Why there can be none here, or None."""
     return None if shutil.which("node") else "the core as WebAssembly is run by node 18 or newer"
-
-
-def pyodide_missing():
-    """Why there is no Pyodide here, or None."""
-    if (IN_PYODIDE / "node_modules" / "pyodide" / "package.json").is_file():
-        return missing()
-    return f"Pyodide is not here: npm ci --prefix {IN_PYODIDE.relative_to(FIRMWARE.parent).as_posix()}"
 
 
 def in_node(module, **asked):

@@ -1,9 +1,5 @@
 """The firmware's core in a browser: bits of the golden programs, and every answer as on this computer."""
 
-import json
-import shutil
-import subprocess
-
 import core_in_node
 import numpy as np
 import pytest
@@ -11,9 +7,8 @@ from build_image import build_image
 from core_in_node import WEB, golden_runs, in_node, recorded_host, unpacked
 from test_golden import GOLDEN, array
 
-from hapticlab.compiler.engines import firmware_library, toolchain
+from hapticlab.compiler.engines import toolchain
 from hapticlab.device.link.messages import FAULTS
-from hapticlab.device.link.wire import encode
 
 needs_node = pytest.mark.skipif(core_in_node.missing() is not None, reason=str(core_in_node.missing()))
 PYODIDE = "emscripten-wasm32-32"
@@ -74,25 +69,3 @@ def test_golden_programs_give_the_committed_bits_in_a_library_for_pyodide(word_b
     assert set(answer["imports"]) <= GIVEN
     has_the_committed_bits(answer["runs"])
     assert toolchain.stamp(core_in_node.FIRMWARE, word_bits) in made.read_bytes()
-
-
-@pytest.mark.skipif(core_in_node.pyodide_missing() is not None, reason=str(core_in_node.pyodide_missing()))
-@pytest.mark.wide
-def test_pyodide_opens_the_library_by_the_code_of_the_package(tmp_path):
-    package = tmp_path / "hapticlab"
-    shutil.copytree(firmware_library.PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(core_in_node.FIRMWARE, package / "firmware")
-    (package / "prebuilt" / PYODIDE).mkdir(parents=True)
-    made = toolchain.build_library(core_in_node.FIRMWARE, tmp_path, PYODIDE, 16)
-    shutil.move(made, package / "prebuilt" / PYODIDE / made.name)
-    runs = []
-    for g, asked in zip(GOLDEN, golden_runs(16), strict=True):
-        numbers = {name: array(g[name], -1).tolist() for name in ("values", "out", "end")}
-        runs.append(asked | numbers | {"name": g["name"], "inputs": array(g["given"], -1).tolist()})
-    (tmp_path / "runs.json").write_text(json.dumps(runs))
-    frames = encode("PING", 5, 42).hex(), encode("PONG", 5, 42).hex()
-    (tmp_path / "ping.json").write_text(json.dumps(frames))
-    node = ["node", core_in_node.IN_PYODIDE / "in_pyodide.mjs", core_in_node.IN_PYODIDE / "core_by_ctypes.py", tmp_path]
-    done = subprocess.run(node, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.strip() == f"{len(GOLDEN)} programs"

@@ -61,7 +61,7 @@ def built(word_bits, *flags):
     """Return the library in the user's cache, built now if it has none of these sources and flags."""
     firmware, target = firmware_folder(), toolchain.running_target()
     name = toolchain.library_name(target, word_bits)
-    path = _cache_folder() / f"{target}-{toolchain.digest(firmware, word_bits, *flags)[:20]}-{name}"
+    path = cache_folder() / f"{target}-{toolchain.digest(firmware, word_bits, *flags)[:20]}-{name}"
     if not path.exists():
         _make_folder(path.parent)
         # built aside and renamed: another process sees the whole library or none
@@ -92,7 +92,7 @@ def _put(made, path):
             raise
 
 
-def _cache_folder():
+def cache_folder():
     if os.name == "nt":
         base = os.environ.get("LOCALAPPDATA") or Path.home() / "AppData/Local"
     elif sys.platform == "darwin":

@@ -301,7 +301,7 @@ def test_a_library_of_other_sources_is_refused(package):
 def test_a_library_that_does_not_load_is_built_instead(package, monkeypatch, tmp_path):
     stamp = toolchain.stamp(package / "firmware", 16)
     (package / "prebuilt" / HERE / toolchain.library_name(HERE, 16)).write_bytes(stamp)  # right sources, no library
-    monkeypatch.setattr(firmware_library, "_cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr(firmware_library, "cache_folder", lambda: tmp_path / "cache")
     assert firmware_library.load_library.__wrapped__(16).hl_host_verify
     assert len(list((tmp_path / "cache").iterdir())) == 1
 
@@ -325,7 +325,7 @@ def test_no_source_of_the_library_is_a_program():
 def test_without_a_compiler_the_error_says_what_to_install(monkeypatch, tmp_path):
     monkeypatch.setattr(toolchain.shutil, "which", lambda name: None)
     monkeypatch.setattr(toolchain, "find_spec", lambda name: None)
-    monkeypatch.setattr(firmware_library, "_cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(firmware_library, "cache_folder", lambda: tmp_path)
     for cure in ("install a C compiler, or do: pip install ziglang", 'engine="interpreter"', "hl.SimulatedPaddle", "sim://"):
         with pytest.raises(EngineMissingError, match=rf"{re.escape(cure)}(.|\n)*no C compiler for "):
             firmware_library.built(16)
@@ -363,7 +363,7 @@ def test_the_target_is_what_this_python_runs_on(monkeypatch, system, name, machi
 
 @pytest.mark.wide
 def test_a_build_that_fails_says_what_the_compiler_said(monkeypatch, tmp_path):
-    monkeypatch.setattr(firmware_library, "_cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(firmware_library, "cache_folder", lambda: tmp_path)
     with pytest.raises(EngineMissingError, match=r"did not compile(.|\n)*no_such_header"):
         firmware_library.built(16, "-include", "no_such_header.h")
     assert list(tmp_path.iterdir()) == []
@@ -371,7 +371,7 @@ def test_a_build_that_fails_says_what_the_compiler_said(monkeypatch, tmp_path):
 
 @pytest.mark.wide
 def test_the_library_is_built_once_and_kept(monkeypatch, tmp_path):
-    monkeypatch.setattr(firmware_library, "_cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(firmware_library, "cache_folder", lambda: tmp_path)
     first = firmware_library.built(8)
     monkeypatch.setattr(toolchain.subprocess, "run", None)  # a second build would fail
     assert firmware_library.built(8) == first
@@ -380,7 +380,7 @@ def test_the_library_is_built_once_and_kept(monkeypatch, tmp_path):
 
 def test_a_cache_that_cannot_be_written_is_an_error_with_a_cure(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("in the way")
-    monkeypatch.setattr(firmware_library, "_cache_folder", lambda: tmp_path / "file" / "hapticlab")
+    monkeypatch.setattr(firmware_library, "cache_folder", lambda: tmp_path / "file" / "hapticlab")
     with pytest.raises(EngineMissingError, match="Set XDG_CACHE_HOME to a folder of your own;"):
         firmware_library.built(16)
 

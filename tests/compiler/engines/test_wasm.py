@@ -17,7 +17,7 @@ from test_golden import GOLDEN, array, program_of
 import hapticlab as hl
 from hapticlab.compiler.engines import skipped_arms
 from hapticlab.compiler.engines.engine import load
-from hapticlab.compiler.engines.wasm import Wasm, _Instance
+from hapticlab.compiler.engines.wasm import Wasm, _Instance, is_in_browser
 from hapticlab.compiler.engines.wasm_emit import at_once, emit
 from hapticlab.compiler.engines.wasm_lanes import ONE, TWO
 from hapticlab.compiler.engines.wasm_words import OPCODES, assemble, signed, unsigned
@@ -27,7 +27,8 @@ from hapticlab.compiler.ir.trace import Builder, select
 from hapticlab.device.simulated.closed_loop import link
 from hapticlab.errors import ProgramError
 
-pytest.importorskip("wasmtime", reason="needs wasmtime, or llvmlite is missing on purpose and wasmtime with it")
+if not is_in_browser():
+    pytest.importorskip("wasmtime", reason="needs wasmtime, or llvmlite is missing on purpose and wasmtime with it")
 pytestmark = pytest.mark.machine_code
 TICKS, CUT = 12, 7
 REALS = {"f32": ("f32",), "f64": ("f64",), "mixed": ("f32", "f64")}
