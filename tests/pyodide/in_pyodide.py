@@ -1,6 +1,6 @@
 """Python in Pyodide, in node: ``run_in_pyodide(code)`` returns what the code prints.
 
-One Pyodide serves all tests of a process, because loading it takes 8 s; hapticlab is installed there by its wheel and micropip, from
+One Pyodide serves all tests of a process, because loading it takes 8 s. micropip installs hapticlab there, by its wheel and from
 the archive alone. A request that would leave node is refused, and the run that makes it fails.
 """
 

@@ -71,7 +71,7 @@ def archive():
 def _complete(folder):
     missing = [name for name in (LOCK, *CORE) if not (folder / name).is_file()]
     if missing:
-        raise NoPyodideError(f"{NAMED} is {folder}, which has no {', '.join(missing)}. Give the folder of a Pyodide distribution.")
+        raise NoPyodideError(f"{NAMED} is {folder}, which has no {', '.join(missing)}. Give a folder of Pyodide.")
     return folder
 
 
@@ -116,8 +116,8 @@ def _fetch(command, where):
         said = str(error)
     if said is not None:
         raise NoPyodideError(
-            f"Pyodide for the tests cannot be fetched from {where}. Connect to npm and PyPI, or name the folder of a Pyodide "
-            f"distribution in {NAMED}.\n{said}"
+            f"Pyodide for the tests cannot be fetched from {where}. Connect to npm and PyPI, or name a folder of Pyodide in "
+            f"{NAMED}.\n{said}"
         )
 
 
@@ -140,14 +140,19 @@ def _added(path, made):
                     pure.writestr(wheel.getinfo(name), wheel.read(name))
         else:
             shutil.copy(path, to)
-    needs = [Requirement(text) for text in metadata.get("requires_dist", [])]
     tops = {name.partition("/")[0] for name in files if name.endswith(".py")}
     return {
         "name": canonicalize_name(metadata["name"]), "version": metadata["version"], "file_name": to.name, "install_dir": "site",
         "sha256": hashlib.sha256(to.read_bytes()).hexdigest(), "package_type": "package", "unvendored_tests": False,
         "imports": sorted(top.removesuffix(".py") for top in tops if ".dist-info" not in top and ".data" not in top),
-        "depends": sorted({canonicalize_name(n.name) for n in needs if not n.marker or n.marker.evaluate({**BROWSER, "extra": ""})}),
+        "depends": sorted({canonicalize_name(need.name) for need in needed(metadata.get("requires_dist", []))}),
     }  # fmt: skip
+
+
+def needed(requirements):
+    """Return those requirements of a wheel, as it states them, that hold in Pyodide."""
+    needs = map(Requirement, requirements)
+    return [need for need in needs if not need.marker or need.marker.evaluate({**BROWSER, "extra": ""})]
 
 
 if __name__ == "__main__":
