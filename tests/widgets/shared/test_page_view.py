@@ -1,0 +1,126 @@
+"""A shared page's view gives what a notebook's gives: the same rows, flags and words for the same clock, hand and presses."""
+
+import numpy as np
+import pytest
+from page_in_node import NODE, array, in_node
+
+import hapticlab as hl
+from hapticlab.widgets.shared.page_data import page_data
+from hapticlab.widgets.stage import Stage
+
+pytestmark = pytest.mark.skipif(NODE is None, reason="the scripts of a page are run by node 18 or newer")
+PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, force_max=4.0, hand=hl.Hand("pinch"))
+SCENE = hl.wall()(k=300, x_o=0.01)
+#: frame of the screen -> what is said before it
+SAID = {
+    0: [("show", True)],
+    10: [("tell", "intend", 0.02)],
+    40: [("press", "record"), ("tell", "move", 1, 600.0)],  # k
+    60: [("tell", "intend", 0.03)],
+    90: [("tell", "move", 1, -5.0)],  # refused
+    100: [("tell", "hold", 0)],
+    130: [("tell", "hold", 1), ("tell", "intend", 0.015)],
+    150: [("press", "slow")],
+    170: [("press", "stop"), ("press", "slow")],
+    180: [("press", "pause")],
+    200: [("press", "save"), ("press", "replay")],
+    230: [("press", "slow")],
+    240: [("press", "replay"), ("press", "resume"), ("press", "slow")],
+    260: [("show", False)],
+    290: [("show", True)],
+    310: [("press", "restart")],
+    320: [("press", "replay")],
+}
+LATE = 250  # this frame comes so much later [s], and all that follow
+DELAY = 0.25
+FRAMES = 520
+
+
+def moments():
+    return [k / 60 + DELAY * (k >= LATE) for k in range(FRAMES)]
+
+
+def in_python():
+    """The frames of a Stage, led as a Session leads it, and its records."""
+    clock, frames, wanted, seen = [0.0], [], 0.0, False
+    stage = Stage(PADDLE, SCENE, clock=lambda: clock[0])
+    for k, now in enumerate(moments()):
+        clock[0], queue = now, []
+        for what, *given in SAID.get(k, ()):
+            if what == "show":
+                seen = given[0]
+                stage.look()
+                (stage.wake if seen else stage.rest)()
+            elif given == ["save"]:  # it would write a file
+                stage.tell("Saved")
+            elif what == "press":
+                queue.append(("press", (given[0], now)))
+            elif what == "tell" and given[0] == "intend":
+                wanted = given[1]
+            elif what == "tell" and given[0] == "hold":
+                queue.append(("hold", bool(given[1])))
+            elif what == "tell":
+                queue.append(("move", (stage.spans[given[1]].name, given[2])))
+        if not seen:
+            continue
+        stage.obey(queue)
+        if SAID.get(k):
+            stage.look()
+        wanted, stage.caught = (wanted if stage.caught is None else stage.caught), None
+        rows = stage.advance(wanted)
+        wanted, stage.caught = (wanted if stage.caught is None else stage.caught), None
+        frame = stage.frame(rows, wanted)
+        if frame is not None:
+            frames.append(frame)
+    return frames, stage.motion.log
+
+
+@pytest.fixture(scope="module")
+def both():
+    told = page_data(Stage(PADDLE, SCENE, clock=lambda: 0.0))
+    script = [[now, SAID.get(k, [])] for k, now in enumerate(moments())]
+    (answer,) = in_node([("view", {"told": told, "script": script})])
+    return answer, *in_python()
+
+
+def test_frames_are_those_of_a_notebook(both):
+    answer, frames, _ = both
+    assert len(answer["seen"]) == len(frames) > 400
+    flags, status = {}, ""
+    for found, frame in zip(answer["seen"], frames, strict=True):
+        flags, status = found.get("flags", flags), found.get("status", status)
+        _, time, count = array(found["bytes"])
+        assert time == frame.time and count == len(frame.rows)
+        np.testing.assert_array_equal(array(found["rows"], "<f4"), frame.rows.ravel())
+        assert found["values"] == frame.flags["values"] and found["wanted"] == pytest.approx(frame.flags["wanted"])
+        assert {name: frame.flags[name] for name in flags} == flags
+
+
+def test_words_are_those_of_a_notebook(both):
+    answer, frames, _ = both
+    said = [one["status"] for one in answer["seen"] if "status" in one]
+    found = [words for k, words in enumerate(said) if words not in said[k - 1 : k]]  # a view that comes back hears all again
+    expected = [frame.status for frame in frames if frame.status]
+    assert found == expected
+    for words in (
+        "in contact",
+        "at its limit",
+        "at 0.1 times",
+        "Recording.",
+        "let go",
+        "fell behind",
+        "Replaying",
+        "needs k >= 0",
+    ):
+        assert any(words in one for one in found), words
+
+
+def test_a_record_is_that_of_a_notebook(both):
+    answer, _, log = both
+    (saved,) = answer["saved"]
+    assert saved["T"] == log.T and saved["fault"] is None
+    assert saved["parameters"] == log.parameters
+    assert [(t, numbers) for t, numbers in saved["changes"]] == [(t, dict(numbers)) for t, numbers in log.changes]
+    assert set(saved["columns"]) == set(log.columns)
+    for name, column in saved["columns"].items():
+        assert array(column).tobytes() == np.asarray(getattr(log, name), float).tobytes(), name
