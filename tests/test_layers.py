@@ -98,7 +98,21 @@ HEAVY = (
     "pint", "llvmlite", "wasmtime", "scipy", "matplotlib", "serial", "ipywidgets", "anywidget", "IPython", "tqdm", "distributed",
     "nbgrader", "pytest", "numba",
 )  # fmt: skip
-COMMANDS = ("demo", "labs", "assign", "grade", "run", "tradeoff", "guide", "ports", "doctor", "flash", "calibrate", "bench")
+COMMANDS = (
+    "demo",
+    "labs",
+    "assign",
+    "grade",
+    "run",
+    "tradeoff",
+    "share",
+    "guide",
+    "ports",
+    "doctor",
+    "flash",
+    "calibrate",
+    "bench",
+)
 FIRST_CELL = """
 import hapticlab as hl
 from hapticlab import n, x

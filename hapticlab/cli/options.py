@@ -38,7 +38,7 @@ def parser():
     _add_labs(commands)
     _add_assign(commands)
     _add_grade(commands)
-    for one in (_add_run(commands, shared), _add_tradeoff(commands, shared)):
+    for one in (_add_run(commands, shared), _add_tradeoff(commands, shared), _add_share(commands, shared)):
         one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     _add_board_commands(commands, shared)
     _add_guide(commands)
@@ -94,6 +94,18 @@ def _add_tradeoff(commands, shared):
     made.add_argument("--every", type=_ticks, default=10, metavar="N", help="one sample of telemetry in N ticks (default: 10)")
     made.set_defaults(T=None, duration=None)
     _add_out(made, "hapticlab-tradeoff")
+    return made
+
+
+def _add_share(commands, shared):
+    text = "write a scene file as one HTML file that runs in any browser, without Python and without a network"
+    made = _add_command(commands, "cli.share.share", text, [shared])
+    made.add_argument("file", metavar="FILE.py")
+    made.add_argument("-o", "--out", metavar="FILE.html", help="the file to write (default: FILE.html in this folder)")
+    made.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
+    made.add_argument("--method", metavar="NAME", help="integrator of the equations of motion (default: rk4)")
+    made.add_argument("--let-go", action="store_true", help="a drag that ends lets go of the handle, so that it can be thrown")
+    made.set_defaults(duration=None)
     return made
 
 

@@ -29,24 +29,22 @@ def demo(parser, options):
     found = demonstration.study(quick=options.quick)
     facts = demonstration.report(found)
     files = demonstration.write(found, folder)
-    return _tell(options, facts, files, demonstration.words(facts))
+    return tell(options, facts, files, demonstration.words(facts))
 
 
 def run(parser, options):
     """Run a scene file, on its own paddle or on a board."""
     if options.port is None and (options.yes or options.every):
         parser.error(f"{'--yes' if options.yes else '--every'} is for a board; name its port with --port")
-    if options.method not in (None, *_METHODS):
-        parser.error(f"argument --method: invalid choice: {options.method!r} (choose from {', '.join(_METHODS)})")
-    file, path = _opened(parser, options), Path(options.file)
+    chosen = compiling(parser, options)
+    file, path = opened(parser, options), Path(options.file)
     folder = _folder(options)
-    compiling = {"method": options.method} if options.method else {}
     if options.port is None:
-        program, log = run_scene(file, **compiling)
+        program, log = run_scene(file, **chosen)
         facts, loop = report_of(program, log), None
     else:
         try:
-            program, log, loop = board.run_on_board(file, options, **compiling)
+            program, log, loop = board.run_on_board(file, options, **chosen)
         except KeyboardInterrupt:
             complain("interrupted; the motor is off. No samples are kept: a run is written at its end, after --duration")
             return INTERRUPTED
@@ -54,13 +52,13 @@ def run(parser, options):
     figure, names = folder / f"{path.stem}.png", [name for name in file.scene.watch if name in log.channels]
     plot(log, "x", *names, "F").savefig(figure)
     files = {"figure": figure, "telemetry": log.to_csv(folder / f"{path.stem}.csv")}
-    _tell(options, facts, files, f"{log.paddle}\n{describe(facts)}" + (f"\nloop     {loop}" if loop else ""))
+    tell(options, facts, files, f"{log.paddle}\n{describe(facts)}" + (f"\nloop     {loop}" if loop else ""))
     return complain(f"the run failed: {log.fault}") if log.fault else 0
 
 
 def tradeoff(parser, options):
     """Measure speed against accuracy of a scene file, for its own paddle and the targets asked for."""
-    file, path = _opened(parser, options), Path(options.file)
+    file, path = opened(parser, options), Path(options.file)
     folder = _folder(options)
     given = {name: several for name, several in {"methods": options.methods, "T": options.periods}.items() if several}
     targets = {"targets": options.targets} if options.targets else {}
@@ -74,10 +72,17 @@ def tradeoff(parser, options):
     files = {"figure": figure, "table": found.table.to_csv(folder / f"{path.stem}-tradeoff.csv")}
     chosen = {target: found.choose(target=target, **asked).facts() for target in found.targets}
     facts = {"scene": found.name, "paddle": str(file.paddle), "rows": len(found.table), "chosen": chosen}
-    return _tell(options, facts, files, found.summary(**asked))
+    return tell(options, facts, files, found.summary(**asked))
 
 
-def _opened(parser, options):
+def compiling(parser, options):
+    """Return the options of hl.compile that the command line names."""
+    if options.method not in (None, *_METHODS):
+        parser.error(f"argument --method: invalid choice: {options.method!r} (choose from {', '.join(_METHODS)})")
+    return {"method": options.method} if options.method else {}
+
+
+def opened(parser, options):
     """Return the scene file that was named, with what the command line sets."""
     path = Path(options.file)
     if path.is_dir():
@@ -105,7 +110,8 @@ def _folder(options):
         raise OSError(problem.errno, f"{problem.strerror}; choose another folder with --out", str(folder)) from None
 
 
-def _tell(options, facts, files, text):
+def tell(options, facts, files, text):
+    """Print the text and the files, or all facts as JSON; return the exit code."""
     if options.json:
         print(json.dumps({"hapticlab": __version__, **facts, "files": {k: str(p.resolve()) for k, p in files.items()}}, indent=1))
     else:

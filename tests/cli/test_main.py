@@ -682,6 +682,21 @@ def test_the_names_that_options_offer_are_those_that_the_modules_define():
 def test_every_command_is_a_function_that_is_there():
     commands = options.parser().commands
     assert {name: callable(main._command(one.get_default("command"))) for name, one in commands.items()} == dict.fromkeys(
-        ["demo", "labs", "lab", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate", "bench", "guide"],
+        [
+            "demo",
+            "labs",
+            "lab",
+            "assign",
+            "grade",
+            "run",
+            "tradeoff",
+            "share",
+            "ports",
+            "doctor",
+            "flash",
+            "calibrate",
+            "bench",
+            "guide",
+        ],
         True,
     )

@@ -1,10 +1,10 @@
 // The scripts of a shared page, without a page: cases from stdin, {scripts, cases: [[what, given], ...]}, answers to stdout.
 import { readFileSync } from "node:fs"
 
-const PARTS = ["Program", "Stepping", "Pace", "Rows", "Replay", "Motion", "PageSource", "refusal", "general", "chatterWords", "contactWords", "lateWords", "linspace", "normal", "rowsApart"]
+const PARTS = ["Program", "Stepping", "Pace", "Rows", "PageSource", "refusal", "general", "chatterWords", "contactWords", "lateWords", "linspace", "normal"]
 const { scripts, cases } = JSON.parse(readFileSync(0, "utf8"))
 const source = scripts.map((path) => readFileSync(path, "utf8")).join("\n")
-const { Program, Stepping, Pace, Rows, Replay, PageSource, ...parts } = new Function(`"use strict"; ${source}\n return { ${PARTS} }`)()
+const { Program, Stepping, Pace, Rows, PageSource, ...parts } = new Function(`"use strict"; ${source}\n return { ${PARTS} }`)()
 
 const text = (numbers) => Buffer.from(Float64Array.from(numbers).buffer).toString("base64")
 const numbers = (array) => [...new Float64Array(Uint8Array.from(Buffer.from(array, "base64")).buffer)]
@@ -46,14 +46,6 @@ const ANSWERS = {
     const rows = new Rows(T, columns, watched)
     const found = some.map(([samples, contact]) => text(rows.add(arrays(samples), Float64Array.from(numbers(contact)))))
     return { found, recent: rows.last().map(text) }
-  },
-
-  replay({ log, speed, moments }) {
-    const replay = new Replay({ ...log, columns: arrays(log.columns) }, speed, moments[0])
-    return moments.map((now) => {
-      const some = replay.take(now)
-      return some && texts(some)
-    })
   },
 
   words({ name, given }) {

@@ -181,6 +181,16 @@ def _refused(program, values):
     return ""
 
 
+def test_a_parameter_may_have_the_name_of_what_every_object_has():
+    data = told(hl.Scene(force=hl.parameters("constructor", units="N/m", values=3.0) * hl.x(hl.n)), PLAIN)
+    values = {"constructor": 3.0}
+    asked = [
+        ("words", {"name": "refusal", "given": [data["parameters"], values, given]}) for given in ({}, {"constructor": -1.0})
+    ]
+    nothing, refused = in_node(asked)
+    assert nothing == "" and refused.startswith("constructor = -1 N/m; a stiffness needs")
+
+
 def test_the_limits_of_a_taylor_method_keep_its_steps_small():
     """In Python its steps are asked where a value is set; a page has limits instead, and each keeps what those allow."""
     scene = hl.library.ball_on_the_paddle(contact_law=hl.contact.penalty(k=hl.parameters("k_b", units="N/m", values=500)))

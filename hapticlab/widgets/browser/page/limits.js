@@ -8,7 +8,7 @@ const NEARLY = 1e-9
 // limits, range, positive, why} of each parameter; changed, values: by name, SI.
 function refusal(told, values, changed) {
   for (const each of told) {
-    if (each.name in changed) {
+    if (Object.hasOwn(changed, each.name)) {
       const words = outside(each, changed[each.name])
       if (words) return words
     }
@@ -29,7 +29,7 @@ function unstable(told, values, changed) {
   const taken = limited.map((each) => [each, Math.max(...each.limits.filter(Number.isFinite).map((end) => partOfTheWay(values[each.name], each.value, end)))])
   const some = taken.filter(([, part]) => part > NEARLY)
   const total = some.reduce((sum, [, part]) => sum + part, 0)
-  const moved = some.filter(([each]) => each.name in changed)
+  const moved = some.filter(([each]) => Object.hasOwn(changed, each.name))
   if (total <= 1 + NEARLY || !moved.length) return ""
   for (const [each] of moved) {
     const words = past(each, values[each.name])

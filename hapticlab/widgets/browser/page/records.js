@@ -37,11 +37,12 @@ class Replay {
     const size = log.columns.t.length
     Object.assign(this, { speed, begun: now, seen: now, shown: 0, parameters: { ...log.parameters }, columns: { ...log.columns } })
     this.columns.intent ??= new Float64Array(size).fill(NaN)
+    // a parameter that was changed is a column
     for (const [since, numbers] of log.changes) {
       for (const [name, value] of Object.entries(numbers)) {
-        if (name in log.columns) continue
-        this.columns[name] ??= new Float64Array(size).fill(this.parameters[name] ?? NaN) // a parameter that was changed is a column
-        this.columns[name] = this.columns[name].map((before, k) => (log.columns.t[k] >= since - log.T / 2 ? value : before))
+        if (Object.hasOwn(log.columns, name)) continue
+        const known = Object.hasOwn(this.columns, name) ? this.columns[name] : new Float64Array(size).fill(this.parameters[name] ?? NaN)
+        this.columns[name] = known.map((before, k) => (log.columns.t[k] >= since - log.T / 2 ? value : before))
       }
     }
   }
