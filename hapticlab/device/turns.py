@@ -8,7 +8,6 @@ turns through, a cell that computes does not.
 import math
 import threading
 import time
-from contextlib import suppress
 
 from ..base.in_notebook import is_in_browser
 
@@ -91,13 +90,18 @@ class OnLoop:
     async def _run(self):
         import asyncio  # where it is needed: it takes longer to import than all else here
 
-        for seconds in self._turns:
-            if seconds > 0:
-                with suppress(TimeoutError):
-                    await asyncio.wait_for(self._woken.wait(), seconds)
-            else:
-                await asyncio.sleep(0)
-            self._woken.clear()
+        loop = asyncio.get_running_loop()
+        try:
+            for seconds in self._turns:
+                if seconds > 0:
+                    timer = loop.call_later(seconds, self._woken.set)
+                    await self._woken.wait()
+                    timer.cancel()
+                else:
+                    await asyncio.sleep(0)
+                self._woken.clear()
+        finally:  # also where a loop ends before its tasks: what the turns hold, such as a motor, is let go
+            self._turns.close()
 
     def wake(self):
         """End the wait for the next turn."""

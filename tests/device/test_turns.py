@@ -74,3 +74,20 @@ def test_without_threads_others_come_between_two_turns(one_thread):
 def test_a_wait_that_is_not_over_when_time_is_up_is_said(both):
     work = turns.begin(counting([], pause=1e6), "wait")
     assert not work.join(0.01) and work.is_alive()
+
+
+def test_a_loop_that_ends_first_ends_the_turns_too(one_thread):
+    ended = []
+
+    def waiting():
+        try:
+            yield 1e6
+        finally:
+            ended.append(True)
+
+    work, soon = turns.begin(waiting(), "wait"), one_thread.event()
+    turns.begin(counting([], soon), "count")
+    assert soon.wait(20) and work.is_alive()
+    work._task.cancel()
+    assert work.join(0) or not one_thread.event().wait(0.0)
+    assert ended == [True] and not work.is_alive()
