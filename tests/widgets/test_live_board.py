@@ -1,7 +1,5 @@
 """A board on view: its motor goes on by a press of Start alone, and off with silence, views, faults and other users."""
 
-import threading
-
 import numpy as np
 import pytest
 
@@ -363,11 +361,11 @@ def test_a_scene_that_does_not_fit_is_refused_before_it_is_shown(board, monkeypa
 
 
 @pytest.mark.wide
-def test_by_the_clock_on_the_wall_in_its_own_thread():
+def test_by_the_clock_on_the_wall_in_its_own_turns(both):
     """The real protocol in real time: frames come, and with the last view the motor is off."""
     with hl.connect("sim://hapkit?pace=real", paddle=HAND) as board:
         view = hl.live(board, WALL)
-        session, frames, pushed = view._session, [], threading.Event()
+        session, frames, pushed = view._session, [], both.event()
 
         def sink(frame):
             frames.append(frame)
@@ -380,10 +378,10 @@ def test_by_the_clock_on_the_wall_in_its_own_thread():
         session.connect(sink)
         session.ready("page")
         assert pushed.wait(20)
-        thread = session._turns
+        turns = session._turns
         session.connect(None)
         session.gone("page")
-        thread.join(20)
+        assert turns.join(20)
         assert board.state()["state"] != STATES["RUN"]
 
 
@@ -402,10 +400,10 @@ def test_without_threads_a_cell_that_takes_the_turn_is_a_silence_too(board, one_
     assert stage.is_running
 
 
-def test_a_view_that_nobody_keeps_switches_its_motor_off():
+def test_a_view_that_nobody_keeps_switches_its_motor_off(both):
     with hl.connect("sim://hapkit?pace=real", paddle=HAND) as board:
         view = hl.live(board, WALL)
-        session, on = view._session, threading.Event()
+        session, on = view._session, both.event()
 
         def sink(frame):
             session.alive("page")
@@ -417,7 +415,7 @@ def test_a_view_that_nobody_keeps_switches_its_motor_off():
         session.connect(sink)
         session.ready("page")
         assert on.wait(20)
-        thread = session._turns
+        turns = session._turns
         del view
-        thread.join(20)
+        assert turns.join(20)
         assert board.state()["state"] != STATES["RUN"]

@@ -2,6 +2,7 @@
 
 On a real port a thread reads, and keeps the board's watchdog fed. A port in virtual time (``lockstep``) has no thread:
 whoever waits reads, so that the same calls give the same run; time passes for that thread alone, and others are refused.
+Where there are no threads, the event loop reads between two turns of others, and whoever waits reads meanwhile.
 """
 
 import itertools
@@ -11,6 +12,7 @@ import time
 from contextlib import contextmanager, suppress
 
 from ...errors import LinkError, PaddleError, PortError
+from ..turns import begin, has_threads
 from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS, row_of
 from .port_faults import slept
 from .presence import LONGEST_PAUSE, Presence
@@ -21,6 +23,8 @@ from .wire import Decoder, encode
 HEARTBEAT = HOST_SILENCE_MS / 4000
 #: seconds until a request is sent again, soon enough to break no silence, and how often. A board answers within 2 ms.
 PATIENCE, TRIES = 0.03, 33
+#: between two looks at a port on which nobody else reads while somebody waits [s]
+LOOK = 1e-3
 
 
 class Exchange:
@@ -32,7 +36,7 @@ class Exchange:
         Of open_port.
     on_frame : callable
         Called with every Frame that is no reply: samples, fault reports. In the reader's thread, so it only stores. The
-        thread keeps alive whatever this refers to: never a paddle, whose motor would then run on when nobody holds it.
+        reader keeps alive whatever this refers to: never a paddle, whose motor would then run on when nobody holds it.
 
     Attributes
     ----------
@@ -55,15 +59,13 @@ class Exchange:
         # guarded requests count by themselves: a board refuses one older than the last it obeyed
         self._sequences = {guarded: itertools.count(1) for guarded in (False, True)}
         self._wanted = self._reply = self._then = self._beat_sequence = None
-        port.timeout = HEARTBEAT / 4  # so that a silent board does not keep the reader from beating
+        self._alone = not (self.lockstep or has_threads())  # nobody reads while somebody waits
+        port.timeout = 0.0 if self._alone else HEARTBEAT / 4  # so that a silent board does not keep the reader from beating
         self._turn, self._news, self.closed = threading.Lock(), threading.Condition(), False
         self._waiting = None  # the thread for which virtual time passes
         self._last_sent = self.now()
         self.presence = Presence(self.now) if self.lockstep else Presence()
-        self._thread = None
-        if not self.lockstep:
-            self._thread = threading.Thread(target=self._read_for_ever, name=f"hapticlab {port.port}", daemon=True)
-            self._thread.start()
+        self._reader = None if self.lockstep else begin(self._read_for_ever(), f"hapticlab {port.port}")
 
     def ask(self, message, *values, rest=b"", patience=PATIENCE, tries=TRIES, then=lambda: None):
         """Send a request until its reply comes; return the reply's Frame.
@@ -139,8 +141,8 @@ class Exchange:
     def close(self):
         """End the reader and close the port; the board goes silent-host by itself."""
         self.closed = True
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join(2)
+        if self._reader is not None and not self._reader.is_current():
+            self._reader.join(2)
         carrier = getattr(self.port, "_socket", None)
         self.port.close()
         if carrier is not None:
@@ -200,7 +202,7 @@ class Exchange:
 
     def _wait_until(self, condition, seconds, beat=False):
         deadline = self.now() + seconds
-        if not self.lockstep:
+        if not (self.lockstep or self._alone):
             with self._news:
                 self._news.wait_for(lambda: condition() or self.broken, seconds)
             self.check()
@@ -210,7 +212,11 @@ class Exchange:
                 return False
             if beat:
                 self._beat()
-            self._take(read_available(self.port))
+            if self.lockstep:
+                self._take(read_available(self.port))
+            elif not self._read():
+                self.check()
+                time.sleep(LOOK)
         return True
 
     def _take(self, data):
@@ -252,22 +258,29 @@ class Exchange:
             self._send(encode("STATUS", self._beat_sequence, self.session))
 
     def _read_for_ever(self):
-        while not self.closed:
-            try:
-                data = read_available(self.port)
-                self.presence.note()
+        while not self.closed and self.broken is None:
+            self._read(beat=True)
+            yield HEARTBEAT / 4 if self._alone else 0.0
+
+    def _read(self, beat=False):
+        """Take what has come, and say that the host is there; return whether something came."""
+        try:
+            data = read_available(self.port)
+            self.presence.note()
+            if beat:
                 self._beat()
-                if data:
-                    with self._news:
-                        self._take(data)
-                        self._news.notify_all()
-            except Exception as problem:  # whatever it was, those who wait must hear of it
-                if not self.closed:
-                    self.broken = self._explained(problem)
-                self.presence.end()
+            if data:
                 with self._news:
+                    self._take(data)
                     self._news.notify_all()
-                return
+            return bool(data)
+        except Exception as problem:  # whatever it was, those who wait must hear of it
+            if not self.closed:
+                self.broken = self._explained(problem)
+            self.presence.end()
+            with self._news:
+                self._news.notify_all()
+            return False
 
 
 #: which message answers which request, where it is not ACK

@@ -1,8 +1,8 @@
 """``sim://``: the firmware's own core on this computer, closed around a simulated paddle, behind a serial port.
 
 ``sim://hapkit`` takes the mechanics, the sensor and the drive of a profile; ``sim://hapkit?pace=real`` runs by the clock
-on the wall. Without a pace time is virtual: it passes while somebody reads, as fast as the computer can, so that the
-same calls give the same run.
+on the wall; where there are no threads it catches up with the clock whenever somebody looks. Without a pace time is virtual: it
+passes while somebody reads, as fast as the computer can, so that the same calls give the same run.
 """
 
 import threading
@@ -19,9 +19,12 @@ from ..profiles import PROFILES
 from ..simulated.angle_sensor import AngleSensor
 from ..simulated.moved_handle import Handle
 from ..simulated.simulated_paddle import SimulatedPaddle
+from ..turns import begin, has_threads
 
 #: of ticks that are late, made up for at once [s]
 LONGEST_BURST = 0.03
+#: between two looks of a read that waits by itself [s]
+LOOK = 1e-3
 
 
 class Serial(SerialBase):
@@ -59,9 +62,9 @@ class Serial(SerialBase):
             self._per_metre = 1 / self.settings.metres_per_count
             self._angle = self._angle_sensor()
             self.board.tick(self._counts(), self.now())  # it has looked at its sensor before anybody asks
-        if not self.lockstep and not hasattr(self, "_thread"):
-            self._thread = threading.Thread(target=self._run_by_the_clock, name=self.port, daemon=True)
-            self._thread.start()
+        self._begun = time.monotonic() - self.now()
+        if not self.lockstep and has_threads() and not hasattr(self, "_clock"):
+            self._clock = begin(self._run_by_the_clock(), self.port)
 
     def lead(self, x):
         """Put the handle to x [m], at rest, as a hand would; the board's sensor has seen it there."""
@@ -80,6 +83,8 @@ class Serial(SerialBase):
     @property
     def in_waiting(self):
         self._require_open()
+        with self._changed:
+            self._catch_up_alone()
         return len(self._heard)
 
     def read(self, size=1):
@@ -89,6 +94,12 @@ class Serial(SerialBase):
                 deadline = self.now() + (self.timeout or 0.0)
                 while len(self._heard) < size and self.now() < deadline:
                     self._tick()
+            elif not has_threads():
+                until = time.monotonic() + (self.timeout or 0.0)
+                self._catch_up_alone()
+                while len(self._heard) < size and time.monotonic() < until:
+                    time.sleep(LOOK)
+                    self._catch_up_alone()
             else:
                 self._changed.wait_for(lambda: len(self._heard) >= size or not self.is_open, self.timeout)
             said, self._heard = self._heard[:size], self._heard[size:]
@@ -135,15 +146,24 @@ class Serial(SerialBase):
         return AngleSensor(settings.wrap, settings.sensor_flight) if flies else None
 
     def _run_by_the_clock(self):
-        begun = time.monotonic() - self.now()
         while self.is_open:
             with self._changed:
-                # a computer that slept does not make up for it: in a burst nobody could say that he is there
-                begun = max(begun, time.monotonic() - self.now() - LONGEST_BURST)
-                while self.is_open and self.now() < time.monotonic() - begun:
-                    self._tick()
+                self._catch_up()
                 self._changed.notify_all()
-                self._changed.wait(self.board.period)
+            yield self.board.period
+
+    def _catch_up(self):
+        """Tick until now, by the clock on the wall."""
+        # a computer that slept does not make up for it: in a burst nobody could say that he is there
+        now = time.monotonic()
+        self._begun = max(self._begun, now - self.now() - LONGEST_BURST)
+        while self.is_open and self.now() < now - self._begun:
+            self._tick()
+
+    def _catch_up_alone(self):
+        """The same where no thread does."""
+        if not (self.lockstep or has_threads()):
+            self._catch_up()
 
     def _reconfigure_port(self):
         """Nothing of a port's settings matters to a simulation."""

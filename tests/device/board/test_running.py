@@ -108,7 +108,7 @@ def test_a_dropped_paddle_says_stop_and_gives_the_port_back(peer):
     board.home(at=0.0)
     board.start(LEAN(k=10, push=0.1))
     board.wait(0.05)
-    dropped, reader = weakref.ref(board), board.exchange._thread
+    dropped, reader = weakref.ref(board), board.exchange._reader
     del board
     gc.collect()
     assert dropped() is None

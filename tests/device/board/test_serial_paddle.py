@@ -186,7 +186,7 @@ def test_closing_while_it_runs_stops_the_motor():
         board.start(LEAN(k=10, push=0.1))
         board.wait(0.05)
     assert peer.ended.wait(10) and peer.board.duty == 0
-    assert not board.exchange._thread.is_alive()
+    assert not board.exchange._reader.is_alive()
 
 
 def test_a_device_that_leaves_ends_the_run_in_words():
@@ -203,7 +203,7 @@ def test_a_device_that_leaves_ends_the_run_in_words():
         board.set(k=11)
     with board.exchange.port._socket:  # pyserial does not close the socket of a device that has left
         board.close()
-    assert peer.ended.wait(10) and not board.exchange._thread.is_alive()
+    assert peer.ended.wait(10) and not board.exchange._reader.is_alive()
 
 
 def test_two_threads_that_set_at_once_leave_one_truth():

@@ -6,11 +6,12 @@ from binascii import crc_hqx
 
 import pytest
 
+import hapticlab as hl
 from hapticlab.device.link.exchange import HEARTBEAT, PATIENCE, TRIES, Exchange
 from hapticlab.device.link.messages import HOST_SILENCE_MS, MESSAGES
 from hapticlab.device.link.serial_ports import read_available
 from hapticlab.device.link.wire import decode, encode, stuff
-from hapticlab.errors import LinkError
+from hapticlab.errors import LinkError, PortError
 
 
 class Script:
@@ -182,3 +183,31 @@ def test_what_waits_is_read_at_once_also_where_a_port_counts_to_1():
     port = CountsToOne(None)
     port.heard = bytes(range(200))
     assert read_available(port) == bytes(range(64))
+
+
+def test_a_run_goes_on_while_nobody_asks_and_whoever_waits_reads(both):
+    """By the clock on the wall, for longer than the silence that a board takes for the host's end."""
+    with hl.connect("sim://hapkit?pace=real") as board:
+        board.start(hl.wall()(k=150, x_o=0.01))
+        run, enough = board.under_way, both.event()
+
+        def add(frame):
+            run.add(frame)
+            if run.last_tick > 3 * HOST_SILENCE_MS:
+                enough.set()
+
+        board.exchange.give(add)
+        assert enough.wait(20) and run.fault is None and board.exchange.state is not None
+        reader = board.exchange._reader
+        assert len(board.stop().t) > 3 * HOST_SILENCE_MS
+        log = board.run(hl.wall()(k=150, x_o=0.01), duration=0.2, progress=False)
+        assert len(log.t) == 200 and not log.fault
+    assert not reader.is_alive()
+
+
+def test_without_threads_what_breaks_a_port_is_heard_by_who_waits(one_thread):
+    with hl.connect("sim://hapkit?pace=real") as board:
+        board.exchange.port.close()
+        with pytest.raises(PortError, match="is closed; connect again"):
+            board.exchange.wait(lambda: False, 1.0)
+        assert board.exchange.broken is not None and board.exchange._reader.join(1)

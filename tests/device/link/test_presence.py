@@ -89,7 +89,7 @@ def test_a_port_that_went_while_the_computer_slept(slept):
     exchange.ask("PING", 5)
     port.time += slept
     port.coming.put(serial.SerialException("device reports readiness to read but returned no data"))
-    exchange._thread.join(10)
+    assert exchange._reader.join(10)
     with pytest.raises(PortError) as gone:
         exchange.check()
     if slept > LONGEST_PAUSE:
