@@ -6,6 +6,8 @@ import sys
 from collections.abc import Mapping
 from typing import Any
 
+from ..errors import HapticlabError
+
 
 def in_a_notebook() -> bool:
     """Tell whether IPython runs this; it is not imported to find out."""
@@ -19,6 +21,15 @@ def in_a_notebook() -> bool:
 def is_in_browser() -> bool:
     """Whether a browser runs this Python (Pyodide): one thread, and no other process, serial port or socket."""
     return sys.platform == "emscripten"
+
+
+def require_processes(asked: str, error: type[HapticlabError] = HapticlabError) -> None:
+    """Raise an error where there is only one process: ``asked`` is what needs others, as the subject of a sentence."""
+    if is_in_browser():
+        raise error(
+            f"{asked} runs other processes, and Python in a browser cannot start any. Install hapticlab on a computer "
+            "(pip install hapticlab), and run this there"
+        )
 
 
 def display(data: Mapping[str, Any], metadata: Mapping[str, Any] | None = None) -> None:

@@ -10,11 +10,12 @@ from itertools import chain, count
 from pathlib import Path
 
 from .. import __version__
+from ..base.in_notebook import is_in_browser
 from ..course.drawings.wiring_files import wiring_svg
 from ..device.bring_up.about import restorable, settings_of
 from ..device.bring_up.bench import bench as first_power_up
 from ..device.bring_up.practised import PractisingOwner
-from ..device.link.serial_ports import available_ports
+from ..device.link.serial_ports import IN_A_BROWSER, available_ports
 from ..device.setup.before_flash import before_flash
 from ..device.setup.calibrate import calibrate as calibrate_paddle
 from ..device.setup.connect import connect
@@ -26,7 +27,7 @@ from ..device.setup.person import Person, agrees
 from ..device.setup.practice import practice_board
 from ..device.setup.stored_settings import offer
 from ..device.simulated.simulated_paddle import SimulatedPaddle
-from ..errors import PaddleError
+from ..errors import PaddleError, PortError
 from .exits import INTERRUPTED
 
 #: a simulated board has no motor that could hurt and no handle that a person could lead
@@ -53,7 +54,9 @@ def ports(parser, options):
     for port in found:
         asked = "asked by connect()" if port.known else "left alone unless named: it may drive something else"
         print(f"{port.device:<16} {port.known or port.description or 'unknown':<36} {asked}")
-    if not any(port.known for port in found):
+    if is_in_browser():
+        print(IN_A_BROWSER, file=sys.stderr)
+    elif not any(port.known for port in found):
         print("No known board is plugged in; everything else works without one: hapticlab labs", file=sys.stderr)
         print("If you have a board, this says what to look at: hapticlab doctor", file=sys.stderr)
     return 0
@@ -82,6 +85,8 @@ def _for_a_stranger(report):
 
 def flash(parser, options):
     """Write the firmware into a board."""
+    if is_in_browser():
+        raise PortError(IN_A_BROWSER, "missing")
     tell, board = partial(print, file=sys.stderr), options.board or _likely_board(options.port)
     if board not in FLASHED | COPIED:
         raise PaddleError(f"board = {board!r}; this package has firmware for {', '.join(FLASHED | COPIED)}. Give one of them")

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from ..base.in_notebook import is_in_browser
 from ..course.instructor import check_tree, mark_notebook, solved_notebook
 from ..course.labs import copy_labs, find_labs, incomplete_labs
 from ..course.notebook import read, write
@@ -29,6 +30,9 @@ def labs(parser, options):
     if len(options.lab) == 1:  # asked for by its number: also where it is begun
         here = [lab for lab in find_labs(folder) if lab.number == options.lab[0]]
     command = _jupyter(folder, *here[:1])
+    if is_in_browser():
+        print("\nto open them: use the file browser of this page")
+        return code
     if options.no_open:
         print(f"\nto open them: {words_of(command)}")
         return code

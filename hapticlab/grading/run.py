@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..base.in_notebook import require_processes
 from ..course.personal import foreign_numbers
 from ..device.progress import progress_bar
+from ..errors import CourseError
 from .bench import Task
 from .cluster import ClusterWorkers
 from .grade import refused
@@ -104,6 +106,7 @@ def run(
     -------
     Graded
     """
+    require_processes("Grading", CourseError)
     limits, before = limits or Limits(), processor_seconds()
     sources = find_submissions(paths, assignment.folder.name)
     secrets = tuple(str(Path(path).resolve()) for path in (*paths, *hidden, *([journal] if journal else [])))

@@ -13,6 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from .. import __version__
+from ..base.in_notebook import require_processes
 from .all_checks import walk
 from .outcome import ATTENTION, FAULT
 from .table import CHECKS
@@ -30,6 +31,7 @@ LEAST = 4
 
 def self_test(parser, options):
     """Run all checks, write the file, and say where it is; 1 if anything is a fault."""
+    require_processes("The self-test")
     file = Path(options.out).resolve()
     try:
         with file.open("a", encoding="utf-8"):  # a file that cannot be written is told before two minutes are spent

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...compiler.boards.cost import costs
 from ...compiler.engines.engine import load
-from ...compiler.engines.vm import machine
+from ...compiler.engines.table import ENGINES
 from ...compiler.tick.compile_scene import compile
-from ...errors import EngineMissingError, HapticlabError, ProgramLimitError
+from ...errors import HapticlabError, ProgramLimitError
 from .port_error import WILD, compared, counted
 from .tradeoff_rows import OK, REFUSED, Status
 
@@ -174,11 +174,7 @@ def _engine(program):
 @functools.cache
 def machine_is_here():
     """Tell whether the boards' machine runs on this computer."""
-    try:
-        machine(16)
-    except EngineMissingError:
-        return False
-    return True
+    return ENGINES["vm"].is_here()
 
 
 def _costs(program, bench):

@@ -34,7 +34,7 @@ def shared_out(common, workers=None):
         What maps, as ``map``; or copies that work at once, 2 unless given; 1 is this process itself. Only Linux copies a
         process safely, so that elsewhere it is always 1: a new process would need seconds to begin, for seconds of work.
     """
-    workers = 2 if workers is None else number_of(workers)
+    workers = number_of(2 if workers is None else workers)
     if callable(workers):
         yield lambda function, arguments: workers(functools.partial(function, common), arguments)
         return

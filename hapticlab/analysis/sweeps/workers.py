@@ -12,6 +12,7 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecu
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 
+from ...base.in_notebook import is_in_browser
 from ...errors import AnalysisError
 
 #: how often in a row processes may end before one of them has finished anything
@@ -23,7 +24,10 @@ FIRST_BATCH, LARGEST_BATCH = 16, 256
 
 
 def number_of(workers):
-    """Return workers as a whole number >= 1, or the callable that it is; -1 is one for each processor."""
+    """Return workers as a whole number >= 1, or the callable that it is; -1 is one for each processor.
+
+    A browser has one, whatever is asked for: the results are the same, later.
+    """
     if callable(workers):
         return workers
     try:
@@ -31,14 +35,14 @@ def number_of(workers):
     except TypeError:
         number = 0
     if number == -1:
-        return os.cpu_count() or 1
+        number = os.cpu_count() or 1
     if number < 1:
         like = " (give its map: workers=pool.map)" if callable(getattr(workers, "map", None)) else ""
         like = " (workers=client.get_executor().map)" if hasattr(workers, "get_executor") else like
         raise AnalysisError(
             f"workers = {workers!r}; needs a whole number >= 1, -1 for every processor, or a function like map{like}"
         )
-    return number
+    return 1 if is_in_browser() else number
 
 
 def spread(function, pieces, workers, *, threads=True):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ...errors import EngineMissingError, ProgramError
 from .interpreter import Interpreter
 from .llvm import Llvm, open_llvmlite
-from .vm import Vm
+from .vm import Vm, open_vm
 from .wasm import Wasm, open_wasm
 
 
@@ -58,7 +58,7 @@ _RECORDS = (
     EngineRecord("llvm", Llvm, open_llvmlite),
     EngineRecord("wasm", Wasm, open_wasm, extra="wasm"),
     EngineRecord("interpreter", Interpreter, chunk=250, side_by_side=False),
-    EngineRecord("vm", Vm, automatic=False, float64=False, shared=False),  # it remembers the faults of its last run
+    EngineRecord("vm", Vm, open_vm, automatic=False, float64=False, shared=False),  # it remembers the faults of its last run
 )
 #: name -> record, the fastest first
 ENGINES = {record.name: record for record in _RECORDS}

@@ -59,6 +59,11 @@ def meaning(number):
     return next((f"{name}: {text}" for name, (n, text) in RESULTS.items() if n == number), f"result {number}")
 
 
+def open_vm():
+    """Raise EngineMissingError, which says what to install, where there is no library of the machine."""
+    machine(16)
+
+
 @functools.cache
 def machine(word_bits, *flags):
     """Return the library that holds the machine, with the types of the two functions called here."""

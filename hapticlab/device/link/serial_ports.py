@@ -9,6 +9,7 @@ import re
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
+from ...base.in_notebook import is_in_browser
 from ...compiler.boards.board_records import BOARDS
 from ...errors import HapticlabError, PortError
 from .port_faults import explain
@@ -30,6 +31,14 @@ PORTS = "HAPTICLAB_PORTS"
 KNOWN = {(usb.vendor, usb.product): usb.words for board in BOARDS.values() for usb in board.usb}
 
 
+#: what somebody can do whose Python a browser runs
+IN_A_BROWSER = (
+    'Python in a browser opens no serial ports. Use a simulated paddle: hl.connect("sim://hapkit") runs its firmware, and '
+    'hl.SimulatedPaddle.from_profile("hapkit") needs none. For a paddle that is plugged in, install hapticlab on a computer '
+    "(pip install hapticlab)"
+)
+
+
 @dataclass(frozen=True)
 class Port:
     """A serial port of this computer; ``known`` names the kind of board, or is None for a stranger's device."""
@@ -46,7 +55,7 @@ class Port:
 
 
 def available_ports():
-    """Return the serial ports of this computer, in the order of their names.
+    """Return the serial ports of this computer, in the order of their names; none where a browser runs this Python.
 
     Only a port whose ``known`` is not None may be opened without being asked for: another may drive a stranger's motor.
 
@@ -54,8 +63,12 @@ def available_ports():
     -------
     list of Port
     """
-    from serial.tools import list_ports
-
+    if is_in_browser():
+        return []
+    try:
+        from serial.tools import list_ports
+    except ImportError:  # pyserial cannot list those of this system; they open by name
+        return []
     return sorted((_described(p) for p in list_ports.comports()), key=_natural)
 
 
@@ -97,6 +110,8 @@ def open_port(url, *, baudrate=BAUDRATE, timeout=0.05):
             "there, or unset it for a real paddle with a person at the handle",
             "refused",
         )
+    if is_in_browser() and not url.lower().startswith("sim://"):
+        raise PortError(f"{url}: {IN_A_BROWSER}", "missing")
     if HANDLERS not in serial.protocol_handler_packages:
         serial.protocol_handler_packages.append(HANDLERS)
     try:

@@ -5,6 +5,7 @@ import sys
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from ...base.in_notebook import is_in_browser
 from ..link.port_faults import RULES, permission_cure
 from .doctor_checks import Check
 
@@ -16,8 +17,8 @@ GROUPS = ("dialout", "uucp")
 
 def notebook():
     """Whether the labs and the live view have what they need here."""
-    needed, missing = ("jupyterlab", "ipywidgets", "anywidget"), []
-    found = []
+    in_browser, missing, found = is_in_browser(), [], []
+    needed = ("ipywidgets", "anywidget") if in_browser else ("jupyterlab", "ipywidgets", "anywidget")
     for name in needed:
         try:
             found.append(f"{name} {version(name)}")
@@ -25,7 +26,8 @@ def notebook():
             missing.append(name)
     if missing:
         words = f"{', '.join(missing)} not installed; needed for the labs, hl.live and hl.stability.explore"
-        return Check("notebook", "attention", words, f"do: {Path(sys.executable).name} -m pip install {' '.join(missing)}")
+        pip = "in a cell: %pip" if in_browser else f"do: {Path(sys.executable).name} -m pip"
+        return Check("notebook", "attention", words, f"{pip} install {' '.join(missing)}")
     return Check("notebook", "ok", ", ".join(found))
 
 
@@ -39,6 +41,8 @@ def rights(url=None, platform=sys.platform):
     platform : str
         As ``sys.platform``.
     """
+    if platform == "emscripten":
+        return Check("rights", "ok", "Python in a browser needs none; it opens simulated paddles alone")
     if platform.startswith("linux"):
         return _linux_rights()
     if platform == "darwin":

@@ -6,9 +6,10 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from ...base.arguments import number
+from ...base.in_notebook import is_in_browser
 from ...errors import LinkError, PaddleError, PortError
 from ..board.serial_paddle import SerialPaddle
-from ..link.serial_ports import available_ports, open_port
+from ..link.serial_ports import IN_A_BROWSER, available_ports, open_port
 from ..simulated.simulated_paddle import SimulatedPaddle
 
 if TYPE_CHECKING:
@@ -73,6 +74,8 @@ def connect(
 
 def _first_found(T, hello):
     """Ask every port that may be a board; none else is opened, for it may drive a stranger's motor."""
+    if is_in_browser():
+        raise PortError(IN_A_BROWSER, "missing")
     ports = available_ports()
     candidates = [port for port in ports if port.known]
     if not candidates:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
+from ...base.in_notebook import is_in_browser
 from ...base.shows_itself import ShowsItself
 from ...errors import HapticlabError
 from ..board.serial_paddle import SerialPaddle
 from ..link.port_faults import permission_cure
-from ..link.serial_ports import available_ports, open_port
+from ..link.serial_ports import IN_A_BROWSER, available_ports, open_port
 from . import computer_checks
 from . import doctor_checks as checks
 
@@ -125,6 +126,8 @@ def _on_board(paddle, person):
 
 def _ports(url):
     """Return the Check of this computer's ports, and the port to look at, or None."""
+    if url is None and is_in_browser():
+        return checks.Check("computer", "no board", "no serial port", IN_A_BROWSER), None
     there = available_ports()
     known = [port for port in there if port.known]
     listed = "; ".join(map(str, there)) or "no serial port"

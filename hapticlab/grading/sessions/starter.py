@@ -11,6 +11,7 @@ from contextlib import ExitStack, nullcontext, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from ...base.in_notebook import require_processes
 from ...errors import CourseError
 from ..inside import callfilter, linux, root, watch
 from . import memory_group
@@ -95,6 +96,7 @@ def start(sandbox="auto", hidden=(), limits=None, cells=(), zygote=None):
     CourseError
         Where the system refuses that level, or a file of ``hidden`` could be read at level "user".
     """
+    require_processes("Grading", CourseError)
     if sandbox not in ("auto", *LEVELS):
         raise CourseError(f"sandbox = {sandbox!r}; needs one of auto, {', '.join(LEVELS)}")
     if sys.platform != "linux":
