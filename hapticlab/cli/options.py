@@ -41,6 +41,7 @@ def parser():
     for one in (_add_run(commands, shared), _add_tradeoff(commands, shared), _add_share(commands, shared)):
         one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     _add_board_commands(commands, shared)
+    _add_site(commands)
     _add_guide(commands)
     made.commands = commands.choices
     return made
@@ -202,6 +203,15 @@ def _add_board_commands(commands, shared):
     made["bench"].add_argument("--out", metavar="FILE", default="hapticlab-bench", help=words)
     words = "try nothing, but store the settings that this report has, if you agree"
     made["bench"].add_argument("--restore", metavar="FILE.json", help=words)
+
+
+def _add_site(commands):
+    text = "build a web site of the labs, in which Python runs in the browser, so that students install nothing"
+    made = _add_command(commands, "cli.site.site", text)
+    made.add_argument("folder", metavar="FOLDER", help="new or empty folder, or the site of an earlier build, which is replaced")
+    words = "folder or .tar.bz2 of a distribution of Pyodide, so that no request leaves the site (default: its own address)"
+    made.add_argument("--pyodide", metavar="ARCHIVE", help=words)
+    made.add_argument("--wheel", metavar="FILE.whl", help="hapticlab for the site (default: made of this one)")
 
 
 def _add_guide(commands):
