@@ -69,6 +69,8 @@ def hapticlab_wheel(folder, given=None):
             files = zipped_files(_built(PACKAGE.parent, aside))
     else:
         files = installed_files("hapticlab") if given is None else zipped_files(given)
+    if "hapticlab/__init__.py" not in files:
+        raise CourseError(f"{given} is not a wheel of hapticlab; give a file such as hapticlab-0.2.0-py3-none-any.whl")
     own = "hapticlab/prebuilt/"
     kept = {path: content for path, content in files.items() if not path.startswith(own) or BROWSER in path}
     for bits in toolchain.WORD_BITS:
@@ -115,10 +117,7 @@ def write_wheel(folder, files):
     """Write files into a folder as a wheel for any Python, named by their metadata, and return its path."""
     info = next(path for path in files if path.endswith(".dist-info/METADATA")).rpartition("/")[0]
     files = dict(sorted(files.items())) | {f"{info}/WHEEL": WHEEL.encode()}
-    digests = {
-        path: base64.urlsafe_b64encode(hashlib.sha256(content).digest()).decode().rstrip("=") for path, content in files.items()
-    }
-    rows = [f"{path},sha256={digest},{len(files[path])}\n" for path, digest in digests.items()]
+    rows = [f"{path},sha256={_digest(content)},{len(content)}\n" for path, content in files.items()]
     files[f"{info}/RECORD"] = "".join([*rows, f"{info}/RECORD,,\n"]).encode()
     path = Path(folder, f"{info.removesuffix('.dist-info')}-py3-none-any.whl")
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
