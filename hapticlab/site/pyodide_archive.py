@@ -19,7 +19,9 @@ class Archive:
     """The files of a distribution by their names, and its lock file's packages by normal names."""
 
     def __init__(self, place):
-        self.place, self.paths = place, {path.name: path for path in Path(place).rglob("*") if path.is_file()}
+        inside = Path(place, "pyodide")  # where a release has it
+        self.place = place
+        self.paths = {path.name: path for path in (inside if inside.is_dir() else Path(place)).iterdir() if path.is_file()}
         lacking = [name for name in (*CORE, LOCK) if name not in self.paths]
         if lacking:
             raise CourseError(
@@ -79,5 +81,6 @@ def opened(given, aside):
     except FileNotFoundError:
         raise CourseError(f"{given} is not there; give a folder, or an archive such as pyodide-314.0.6.tar.bz2") from None
     except (tarfile.TarError, EOFError, OSError) as problem:
-        raise CourseError(f"{given} could not be unpacked: {problem}; give a folder, or a whole .tar.bz2") from None
+        why = str(problem).partition("\n")[0].rstrip(":")
+        raise CourseError(f"{given} could not be unpacked: {why}; give a folder, or a whole .tar.bz2") from None
     return Archive(aside)

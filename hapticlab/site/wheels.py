@@ -20,6 +20,8 @@ from ..compiler.engines.firmware_library import PACKAGE, firmware_folder
 from ..errors import CourseError
 
 BROWSER = "emscripten-wasm32-32"
+#: the libraries of the firmware, in a wheel of hapticlab
+OWN = "hapticlab/prebuilt/"
 #: what an installer writes beside a wheel's own files
 NOT_OF_A_WHEEL = {"INSTALLER", "REQUESTED", "RECORD", "WHEEL", "direct_url.json"}
 MACHINE_CODE = {".so", ".pyd", ".dylib", ".dll"}
@@ -40,23 +42,27 @@ def installed_wheel(name, folder):
     return write_wheel(folder, installed_files(name))
 
 
-def installed_files(name):
-    """Return the files of an installed package's wheel, by their paths in it."""
+def installed_files(name, data="\0"):
+    """Return the files of an installed package's wheel, by their paths in it; machine code only below ``data``."""
     found = distribution(name)
-    paths = [PurePosixPath(path) for path in found.files or ()]
-    kept = {path for path in paths if _belongs(path)}
-    modules = {path.with_name(path.name.partition(".")[0]) for path in kept if path.suffix in (".py", ".pyi")}
-    code = [path for path in paths if path.suffix in MACHINE_CODE and ".." not in path.parts]
-    alone = [path for path in code if path.with_name(path.name.partition(".")[0]) not in modules and "__mypyc" not in path.name]
-    if not kept or alone:
-        why = f"has machine code, such as {alone[0]}" if alone else "was not installed from a wheel"
-        raise CourseError(f"{name} {why}, so that no wheel for a browser can be made of it; install it from PyPI, by pip")
-    return {str(path): Path(found.locate_file(path)).read_bytes() for path in sorted(kept)}
+    paths = [PurePosixPath(path) for path in found.files or () if _belongs(PurePosixPath(path))]
+    modules = {_module(path) for path in paths if path.suffix == ".py"}
+    code = [path for path in paths if path.suffix in MACHINE_CODE and not str(path).startswith(data)]
+    alone = [path for path in code if _module(path) not in modules and "__mypyc" not in path.name]
+    if not modules or alone:
+        why = f"has machine code, such as {alone[0]}," if alone else "was not installed from a wheel"
+        raise CourseError(f"{name} {why} so that no wheel for a browser can be made of it. Install it from PyPI by pip")
+    return {str(path): Path(found.locate_file(path)).read_bytes() for path in sorted({*paths} - {*code})}
 
 
 def _belongs(path):
+    """Whether a file came in the wheel, and goes where Python finds it."""
     made = ".." in path.parts or "__pycache__" in path.parts or path.suffix == ".pth"
-    return not (made or path.suffix in MACHINE_CODE or path.name in NOT_OF_A_WHEEL)
+    return not (made or path.name in NOT_OF_A_WHEEL)
+
+
+def _module(path):
+    return path.with_name(path.name.partition(".")[0])
 
 
 def hapticlab_wheel(folder, given=None):
@@ -68,13 +74,12 @@ def hapticlab_wheel(folder, given=None):
         with tempfile.TemporaryDirectory() as aside:
             files = zipped_files(_built(PACKAGE.parent, aside))
     else:
-        files = installed_files("hapticlab") if given is None else zipped_files(given)
+        files = installed_files("hapticlab", OWN) if given is None else zipped_files(given)
     if "hapticlab/__init__.py" not in files:
         raise CourseError(f"{given} is not a wheel of hapticlab; give a file such as hapticlab-0.2.0-py3-none-any.whl")
-    own = "hapticlab/prebuilt/"
-    kept = {path: content for path, content in files.items() if not path.startswith(own) or BROWSER in path}
+    kept = {path: content for path, content in files.items() if not path.startswith(OWN) or BROWSER in path}
     for bits in toolchain.WORD_BITS:
-        path = f"{own}{BROWSER}/{toolchain.library_name(BROWSER, bits)}"
+        path = f"{OWN}{BROWSER}/{toolchain.library_name(BROWSER, bits)}"
         if toolchain.stamp(firmware_folder(), bits) not in kept.get(path, b""):
             kept[path] = _library(bits)
     return write_wheel(folder, kept)

@@ -696,6 +696,7 @@ def test_every_command_is_a_function_that_is_there():
             "flash",
             "calibrate",
             "bench",
+            "site",
             "guide",
         ],
         True,
