@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs"
 
 const board = new URL("../../hapticlab/widgets/browser/board/", import.meta.url)
-const scripts = ["messages.js", "link.js"].map((name) => readFileSync(new URL(name, board), "utf-8")).join("\n")
+const scripts = ["../page/npz.js", "messages.js", "link.js"].map((name) => readFileSync(new URL(name, board), "utf-8")).join("\n")
 const names = "Decoder, Exchange, encodeFrame, decodeFrame, fieldsOf"
 const link = new Function(`${scripts}; return { ${names} }`)()
 const { session, requests, streams, guards, asks } = JSON.parse(readFileSync(new URL("link_frames.json", import.meta.url), "utf-8"))

@@ -47,7 +47,7 @@ def page_data(stage):
         "watched": list(stage.motion.watched),
         "programs": {name: _module(link(program, one)) for name, one in paddles.items()},
         "plant": {name: list(one.plant_values()) for name, one in paddles.items()},
-        "parameters": _parameters(program),
+        "parameters": parameters_told(program),
         "noise": {"noise": paddle.noise, "hand.push_noise": paddle.hand.push_noise},
         "faults": {"names": culprits(program), "cause": likely_cause(program)},
     }
@@ -58,7 +58,8 @@ def _module(linked):
     return {"code": base64.b64encode(emit(linked)).decode(), **names}
 
 
-def _parameters(program):
+def parameters_told(program):
+    """What a page must know of a program's parameters to refuse a value in words."""
     limits = limits_apart(program)
     return [
         {

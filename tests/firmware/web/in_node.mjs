@@ -3,7 +3,7 @@
 import { readFileSync } from "node:fs"
 
 const board = new URL("../../../hapticlab/widgets/browser/board/", import.meta.url)
-const scripts = ["messages.js", "link.js", "core.js"].map((name) => readFileSync(new URL(name, board), "utf-8")).join("\n")
+const scripts = ["../page/npz.js", "messages.js", "link.js", "core.js"].map((name) => readFileSync(new URL(name, board), "utf-8")).join("\n")
 const { Board, Decoder } = new Function(`${scripts}; return { Board, Decoder }`)()
 const doubles = (text) => new Float64Array(Uint8Array.from(Buffer.from(text, "base64")).buffer)
 const text = (array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength).toString("base64")

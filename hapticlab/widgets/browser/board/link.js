@@ -1,20 +1,9 @@
 // Frames on the wire, and requests with their replies: what hapticlab/device/link/wire.py and exchange.py are to a notebook.
-// messages.py there describes the format. tests/vectors/link_frames.json holds both to the same bytes.
+// messages.py there describes the format. messages.js and, for CRC-32, npz.js come before it. tests/vectors/link_frames.json holds both to the same bytes.
 
 const NAMES = Object.fromEntries(Object.entries(TABLES.messages).map(([name, { number }]) => [number, name]))
 const SIZES = { B: 1, b: 1, H: 2, I: 4, i: 4, f: 4, "8s": 8 }
 const LONGEST = 256 // bytes: no frame is as long, and what precedes is noise
-
-const CRC32 = Uint32Array.from({ length: 256 }, (_, byte) => {
-  for (let k = 0; k < 8; k++) byte = byte & 1 ? (byte >>> 1) ^ 0xedb88320 : byte >>> 1
-  return byte
-})
-
-function crc32(bytes, start = 0) {
-  let crc = ~start
-  for (const byte of bytes) crc = CRC32[(crc ^ byte) & 255] ^ (crc >>> 8)
-  return ~crc >>> 0
-}
 
 // CCITT, as binascii.crc_hqx
 function crc16(bytes, crc = 0xffff) {

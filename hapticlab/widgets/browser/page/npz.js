@@ -63,12 +63,13 @@ function together(parts) {
   return whole
 }
 
-function crc32(bytes) {
+// Begun from the CRC-32 of what stands before the bytes, or from any other number.
+function crc32(bytes, start = 0) {
   const table = Uint32Array.from({ length: 256 }, (_, k) => {
     for (let bit = 0; bit < 8; bit++) k = k & 1 ? (k >>> 1) ^ 0xedb88320 : k >>> 1
     return k
   })
-  let crc = 0xffffffff
+  let crc = ~start
   for (const byte of bytes) crc = table[(crc ^ byte) & 255] ^ (crc >>> 8)
-  return (crc ^ 0xffffffff) >>> 0
+  return ~crc >>> 0
 }

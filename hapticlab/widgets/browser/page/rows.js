@@ -69,3 +69,13 @@ function joined(parts) {
   }
   return whole
 }
+
+// The bytes of a frame, as samples.js takes them apart.
+function frameBytes(sent, time, rows, width, points) {
+  const bytes = new ArrayBuffer(24 + 4 * (rows.length + points.length))
+  new Float64Array(bytes, 0, 3).set([sent, time, rows.length / width])
+  const numbers = new Float32Array(bytes, 24)
+  numbers.set(rows)
+  numbers.set(points, rows.length)
+  return bytes
+}

@@ -226,13 +226,3 @@ class PageSource {
     return { ...news, values: this.values, wanted: motion.held ? this.wanted : motion.place }
   }
 }
-
-// The bytes of a frame, as samples.js takes them apart.
-function frameBytes(sent, time, rows, width, points) {
-  const bytes = new ArrayBuffer(24 + 4 * (rows.length + points.length))
-  new Float64Array(bytes, 0, 3).set([sent, time, rows.length / width])
-  const numbers = new Float32Array(bytes, 24)
-  numbers.set(rows)
-  numbers.set(points, rows.length)
-  return bytes
-}
