@@ -49,10 +49,10 @@ class DisplayList:
         self._kept = []
         self.xlim, self.ylim = (0.0, 1.0), (0.0, 1.0)
 
-    def add(self, kind, points, zorder=3.0, **style):
-        """Keep an item; one that lies nowhere is left out."""
+    def add(self, kind, points, zorder=3.0, shown=True, **style):
+        """Keep an item; one that is not shown or lies nowhere is left out."""
         points = [(float(x), float(y)) for x, y in points]
-        if math.isfinite(sum(map(sum, points))):
+        if shown and math.isfinite(sum(map(sum, points))):
             self._kept.append((zorder, (kind, points, style)))
 
     @property

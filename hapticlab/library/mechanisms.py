@@ -50,19 +50,19 @@ def gears() -> Scene:
 
 def draw_gears(axes, *, x=0.012, phi=0.4, r=0.02, N_1=60.0, N_2=20.0, **_):
     """Draw the rack under the pinion, the gears at their ratio, the flywheel on the second shaft."""
-    big = max(1.3 * r, 0.028 * min(1, N_1 / N_2))
+    big = np.maximum(1.3 * r, 0.028 * np.minimum(1, N_1 / N_2))
     small = big * N_2 / N_1
     s = Sketch(axes, -0.08, 0.2, -0.031, 0.053)
     u, z = s.u, r * phi
     rack = z + 0.04 + clearance(x, z)
-    centre = np.array([max(0.095 + clearance(x, z), rack + big + 2 * u), r])
+    centre = np.stack([np.maximum(0.095 + clearance(x, z), rack + big + 2 * u), r])
     other = centre + [big + small, 0]
     s.pair((x, 0), (rack, 0), carries="F")
     s.handle(x, below=7.8)
-    s.line((rack, 0), (max(rack + 0.11, centre[0] + big), 0), width=3.0, zorder=7)
+    s.line((rack, 0), (np.maximum(rack + 0.11, centre[0] + big), 0), width=3.0, zorder=7)
     turn = -np.pi / 2 + phi
-    s.gear(centre, big, int(N_1), phi, TOOTH)
-    s.gear(other, small, int(N_2), np.pi * (1 + 1 / N_2) - N_1 / N_2 * phi, TOOTH, color="#f4f4f4")
+    s.gear(centre, big, np.trunc(N_1), phi, TOOTH)
+    s.gear(other, small, np.trunc(N_2), np.pi * (1 + 1 / N_2) - N_1 / N_2 * phi, TOOTH, color="#f4f4f4")
     s.disc(centre, r, turn, color="#f4f4f4", zorder=5)
     s.line(centre, centre + r * np.array([np.cos(2.4), np.sin(2.4)]), width=0.8, color=SOFT, zorder=6)
     s.text(centre, "$r$", right=1.8, up=2.6)
@@ -111,8 +111,8 @@ def draw_slider_crank(axes, *, x=0.012, theta=0.9, r=0.03, l=0.09, **_):
     s = Sketch(axes, -0.08, 0.232, -0.043, 0.041)
     u, slider = s.u, l + r * np.cos(theta) - np.sqrt(l**2 - (r * np.sin(theta)) ** 2)
     origin = 0.065 + clearance(x, slider)
-    place, centre = np.array([slider + origin, 0.0]), np.array([origin + l, 0.0])
-    pin = centre + r * np.array([np.cos(theta), np.sin(theta)])
+    place, centre = np.stack([slider + origin, 0.0]), np.stack([origin + l, 0.0])
+    pin = centre + r * np.stack([np.cos(theta), np.sin(theta)])
     s.disc(centre, 1.3 * r, theta, zorder=1.5)
     s.ground((origin - r, -5.5 * u), (origin + r + 4 * u, -5.5 * u))
     s.pair((x, 0), (place[0] - 5 * u, 0), carries="F")
@@ -176,19 +176,19 @@ def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, r
     s = Sketch(axes, -0.09, 0.225, -0.044, 0.077)
     u, z = s.u, rho * (theta - theta_0)
     rack = z + 0.04 + clearance(x, z)
-    ground = np.array([max(0.085 + clearance(x, z), rack + rho + 2 * u), rho])
+    ground = np.stack([np.maximum(0.085 + clearance(x, z), rack + rho + 2 * u), rho])
     rocker = ground + [d, 0]
-    crank = ground + a * np.array([np.cos(theta), np.sin(theta)])
+    crank = ground + a * np.stack([np.cos(theta), np.sin(theta)])
     reach = crank - rocker
     e = np.hypot(*reach)
-    psi = np.arctan2(reach[1], reach[0]) - np.arccos((c**2 + e**2 - b**2) / (2 * c * e))
-    psi %= 2 * np.pi
-    joint = rocker + c * np.array([np.cos(psi), np.sin(psi)])
-    beta = np.angle(complex(*(joint - crank)))
-    beside = [np.array([-np.sin(angle), np.cos(angle)]) for angle in (theta, beta, psi)]
+    psi = (np.arctan2(reach[1], reach[0]) - np.arccos((c**2 + e**2 - b**2) / (2 * c * e))) % (2 * np.pi)
+    joint = rocker + c * np.stack([np.cos(psi), np.sin(psi)])
+    link = joint - crank
+    beta = np.arctan2(link[1], link[0])
+    beside = [np.stack([-np.sin(angle), np.cos(angle)]) for angle in (theta, beta, psi)]
     s.pair((x, 0), (rack, 0), carries="F")
     s.handle(x, below=7.8)
-    s.line((rack, 0), (max(rack + 0.09, ground[0] + rho), 0), width=3.0)
+    s.line((rack, 0), (np.maximum(rack + 0.09, ground[0] + rho), 0), width=3.0)
     s.disc(ground, rho, theta - np.pi / 2 - theta_0, color="#f4f4f4")
     s.line(ground, rocker, width=0.8, color=SOFT, linestyle="--", zorder=3.5)
     s.text((ground + rocker) / 2, "$d$", right=-1.5, up=-1.8)
@@ -247,7 +247,7 @@ def rolling() -> Scene:
 def draw_rolling(axes, *, x=0.012, z=0.008, u=0.012, r=0.015, alpha=0.0, **_):
     """Draw the plate on rollers beside the handle, the disc on it, all along the slope."""
     s, origin = Sketch(axes, -0.075, 0.195, -0.028, 0.0445, tilt=alpha), 0.09 + clearance(x, z)
-    plate = np.array([z + origin, 0.0])
+    plate = np.stack([z + origin, 0.0])
     top = 2.5 * s.u
     centre = plate + [u, top + r]
     s.pair((x, 0), (plate[0] - 22 * s.u, 0), carries="F")
@@ -260,12 +260,12 @@ def draw_rolling(axes, *, x=0.012, z=0.008, u=0.012, r=0.015, alpha=0.0, **_):
     s.ground((start, -5.5 * s.u), (end, -5.5 * s.u))
     if alpha:
         low, level = (start, 0) if alpha > 0 else (end, np.pi)
-        foot, level_to = np.array([low, -5.5 * s.u]), level - alpha
-        s.line(foot, foot + 16 * s.u * np.array([np.cos(level_to), np.sin(level_to)]), width=0.8, color=SOFT, linestyle="--")
+        foot, level_to = np.stack([low, -5.5 * s.u]), level - alpha
+        s.line(foot, foot + 16 * s.u * np.stack([np.cos(level_to), np.sin(level_to)]), width=0.8, color=SOFT, linestyle="--")
         s.angle(foot, 12, level_to, level, r"$\alpha$")
     s.disc(centre, r, -np.pi / 2 - u / r, name="u")
     s.text(centre, "$m$", up=2.5)
-    s.text(centre, "$r$", right=-3 if u >= 0 else 3, up=-1.5)
+    s.text(centre, "$r$", right=np.where(u >= 0, -3, 3), up=-1.5)
     s.angle(centre, r / s.u + 2, np.pi / 2 + 0.6, np.pi / 2 - 0.6, r"$\varphi$")
     s.coordinate("$z$", z, -8.7 * s.u, origin=origin)
     s.coordinate("$u$", u, 0.0, origin=plate[0])

@@ -118,7 +118,7 @@ def _disc(points, style):
 
 def _gear(points, style):
     centre, tip = points
-    teeth, deep = style["teeth"], style["deep"]
+    teeth, deep = int(style["teeth"]), style["deep"]
     radius, turn = math.dist(centre, tip) - deep, math.atan2(tip[1] - centre[1], tip[0] - centre[0])
     at = np.linspace(0, 2 * np.pi, 8 * teeth + 1)
     rim = radius + deep * np.clip(3 * np.cos(teeth * (at - turn)), -1, 1)

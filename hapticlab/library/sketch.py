@@ -4,7 +4,6 @@ Lengths are in metres, to scale where the mechanism has them. Whatever stands fo
 handle) is measured in ``u``, a hundredth of the picture's width: some 8 pixels in a notebook.
 """
 
-import math
 from functools import cache
 
 import numpy as np
@@ -33,13 +32,25 @@ class Sketch:
     """
 
     def __init__(self, axes, left, right, bottom, top, tilt=0.0, u=None):
-        self.axes, self.u = axes, u or max((right - left) / 100, (top - bottom) / 26)
-        self._turn = (math.cos(tilt), math.sin(tilt)) if tilt else None
+        self.axes, self.u = axes, max((right - left) / 100, (top - bottom) / 26) if u is None else u
+        level = isinstance(tilt, (int, float)) and tilt == 0
+        self._turn = None if level else (np.cos(tilt), np.sin(tilt))
         self.left, self.right, self.bottom, self.top = left, right, bottom, top
-        # what is shown along the handle's way, and across it
-        upright = self._turn is not None and abs(self._turn[1]) > 0.9
-        self.ends, self.across = ((bottom, top), (-right, -left)) if upright else ((left, right), (bottom, top))
         axes.set(xlim=(left, right), ylim=(bottom, top))
+
+    @property
+    def ends(self):
+        """What is shown along the handle's way."""
+        return (self.bottom, self.top) if self._upright else (self.left, self.right)
+
+    @property
+    def across(self):
+        """What is shown across the handle's way."""
+        return (-self.right, -self.left) if self._upright else (self.bottom, self.top)
+
+    @property
+    def _upright(self):
+        return self._turn is not None and abs(self._turn[1]) > 0.9
 
     def place(self, points):
         """The points in the picture, turned where it is tilted."""
@@ -49,7 +60,7 @@ class Sketch:
         return [(c * x - s * y, s * x + c * y) for x, y in points]
 
     def add(self, kind, *points, zorder=3.0, **style):
-        """Draw an item of :mod:`hapticlab.library.display_list`."""
+        """Draw an item of :mod:`hapticlab.library.display_list`, ``shown`` where that is true."""
         self.axes.add(kind, self.place(points), zorder, **style)
 
     def line(self, *points, width=1.5, color=INK, linestyle="-", zorder=2.0):
@@ -65,12 +76,13 @@ class Sketch:
         beside = at[0] + right * self.u, at[1] + up * self.u
         self.add("label", at, beside, zorder=9, words=words, colour=color)
 
-    def arrow(self, start, end, label="", color=INK, **moved):
+    def arrow(self, start, end, label="", color=INK, shown=True, **moved):
         """Draw an arrow; its label stands beyond the tip unless moved by ``right``, ``up`` [u]."""
-        self.add("arrow", start, end, zorder=8, colour=color)
+        self.add("arrow", start, end, zorder=8, shown=shown, colour=color)
         if label:
             (x1, y1), (x2, y2) = start, end
-            length = math.hypot(x2 - x1, y2 - y1) or 1.0
+            length = np.hypot(x2 - x1, y2 - y1)
+            length = np.where(length == 0, 1.0, length)
             beyond = {"right": 2.6 * (x2 - x1) / length, "up": 2.6 * (y2 - y1) / length}
             self.text(end, label, **(moved or beyond), color=color)
 
@@ -79,9 +91,8 @@ class Sketch:
         u = self.u
         self.line((origin, y - 1.2 * u), (origin, y + 1.2 * u), width=1.0)
         end = origin + value
-        if abs(value) > u:
-            self.arrow((origin, y), (end, y))
-        self.text((end, y), name, right=2.2 if value >= 0 else -2.2)
+        self.arrow((origin, y), (end, y), shown=abs(value) > u)
+        self.text((end, y), name, right=np.where(value >= 0, 2.2, -2.2))
 
     def handle(self, x, y=0.0, side=1, up=1, below=9.0):
         """Draw the handle with its face exactly at x.
@@ -119,10 +130,10 @@ class Sketch:
         heights = np.round(height(at) - self.bottom, 7).tolist()
         self.add("track", (self.left, self.bottom), (self.right, self.bottom), zorder=1, heights=heights)
         radius, near = 1.2 * u, np.linspace(-1, 1, 41)
-        rest = float(np.max(height(x + radius * near) + radius * np.sqrt(1 - near**2)))
+        rest = np.max(height(x + radius * near) + radius * np.sqrt(1 - near**2))
         self.disc((x, rest), radius, zorder=5)
-        self.slider(x, rest + radius, max(self.top - 3.5 * u, rest + 6 * u), self.bottom + 1.6 * u)
-        self.text((self.left, float(np.max(height(at[: points // 7])))), name, right=4.5, up=2.6)
+        self.slider(x, rest + radius, np.maximum(self.top - 3.5 * u, rest + 6 * u), self.bottom + 1.6 * u)
+        self.text((self.left, np.max(height(at[: points // 7]))), name, right=4.5, up=2.6)
 
     def slider(self, x, foot, knob, low):
         """Draw a handle that stands on what it slides along, from its foot to its knob; its coordinate at a height ``low``."""
@@ -135,7 +146,7 @@ class Sketch:
     def wall(self, place, face, side, half, label=""):
         """Draw a wall that begins at a place, and gives where a face of some half height [m] is beyond it."""
         u, end, (low, high) = self.u, self.ends[side > 0], self.across
-        deep = max((end - place) * side, 4 * u)
+        deep = np.maximum((end - place) * side, 4 * u)
         middle, around = (high + low) / 2, (high - low) / 2
         self.add("wall", (place, 0), (face, 0), (place + side * deep, 0), zorder=1, high=around, middle=middle, face=half)
         if label:
@@ -175,12 +186,13 @@ class Sketch:
 
     def disc(self, centre, radius, turn=None, color=BODY, zorder=3.0, name=""):
         """Draw a disc, with a mark where it is told how far it has turned [rad, counterclockwise]."""
-        rim = centre[0] + radius * math.cos(turn or 0.0), centre[1] + radius * math.sin(turn or 0.0)
+        way = 0.0 if turn is None else turn
+        rim = centre[0] + radius * np.cos(way), centre[1] + radius * np.sin(way)
         self.add("disc", centre, rim, zorder=zorder, fill=color, edge=INK, mark=turn is not None, name=name)
 
     def gear(self, centre, radius, teeth, turn, deep, color=BODY):
         """Draw a gear whose tooth 0 points along ``turn`` [rad]; its teeth reach ``deep`` [m] to either side of the radius."""
-        tip = centre[0] + (radius + deep) * math.cos(turn), centre[1] + (radius + deep) * math.sin(turn)
+        tip = centre[0] + (radius + deep) * np.cos(turn), centre[1] + (radius + deep) * np.sin(turn)
         self.add("gear", centre, tip, zorder=3, teeth=teeth, deep=deep, fill=color)
 
     def rod(self, start, end, label="", right=0.0, up=0.0, width=3.0):
@@ -200,17 +212,16 @@ class Sketch:
         """Draw an angle as an arc with an arrow from start to end [rad], named beyond its middle or 45 degrees on."""
         reach, middle = radius * self.u, start + np.clip((end - start) / 2, -0.8, 0.8)
         turns = np.linspace(start, end, 12)
-        arc = (np.asarray(centre) + reach * np.column_stack([np.cos(turns), np.sin(turns)])).tolist()
+        arc = (np.stack(centre) + reach * np.column_stack([np.cos(turns), np.sin(turns)])).tolist()
         self.line(*arc, width=1.0, zorder=6)
-        if abs(end - start) * radius > 2:
-            self.arrow(arc[-2], arc[-1])
+        self.arrow(arc[-2], arc[-1], shown=abs(end - start) * radius > 2)
         tip = centre[0] + reach * np.cos(middle), centre[1] + reach * np.sin(middle)
         self.text(tip, label, right=2.4 * np.cos(middle), up=2.4 * np.sin(middle))
 
 
 def clearance(x, z, spare=0.01):
     """Distance [m] by which a body at z is drawn farther to the right, so that the handle at x does not run into it."""
-    return max(0.0, x - z - spare)
+    return np.maximum(0.0, x - z - spare)
 
 
 def ring(centre, radius, sides):

@@ -6,8 +6,6 @@ b >= K T/2, where K is the steepest slope of F: the proof of Eq. (23.10) needs n
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import sympy as sp
 
@@ -50,7 +48,7 @@ def draw_detents(axes, *, x=0.013, A=0.6, p=0.01, **_):
     height = 0.01 * A * p / 0.006  # the potential's swing is A p/pi
 
     def track(at):
-        return -0.5 * height * np.cos(2 * np.pi * np.asarray(at) / p)
+        return -0.5 * height * np.cos(2 * np.pi * at / p)
 
     s.track(track, x, "$U(x)$")
     low = -0.5 * height - 2 * s.u
@@ -93,7 +91,6 @@ def draw_texture(axes, *, x=0.0135, p_1=0.003, p_2=0.00185, **_):
     s = Sketch(axes, -0.058, 0.058, -0.0125, 0.0175)
 
     def track(at):
-        at = np.asarray(at)
         bumps = p_1 * (1 - np.cos(2 * np.pi * at / p_1)) + p_2 * (1 - np.cos(2 * np.pi * at / p_2))
         return np.where(at >= 0, 0.3 * bumps, 0.0)
 
@@ -134,15 +131,15 @@ def draw_virtual_fixture(axes, *, x=-0.006, x_g=0.0, w=0.02, x_o=0.035, k=150.0,
     s = Sketch(axes, -0.058, 0.058, -0.0125, 0.0175)
 
     def track(at):
-        d = np.abs(np.asarray(at) - x_g)
+        d = np.abs(at - x_g)
         near, far = d**2 / 2, w**2 / 4 - np.maximum(w - d, 0) ** 2 / 2
         well = k * (np.where(d <= w / 2, near, far) - w**2 / 4)
-        wall = 0.5 * k_w * np.maximum(np.asarray(at) - x_o, 0) ** 2
-        return min(0.6, 0.0055 / max(k * w**2 / 4, 1e-9)) * (well + wall)  # the well stays above its letters
+        wall = 0.5 * k_w * np.maximum(at - x_o, 0) ** 2
+        return np.minimum(0.6, 0.0055 / np.maximum(k * w**2 / 4, 1e-9)) * (well + wall)  # the well stays above its letters
 
     s.track(track, x, "$U(x)$")
     for place, name in ((x_g, "$x_g$"), (x_o, "$x_o$")):
-        s.line((place, -0.0072), (place, float(track(place))), width=0.8, color=SOFT)
+        s.line((place, -0.0072), (place, track(place)), width=0.8, color=SOFT)
         s.text((place, -0.0072), name, up=-1.8)
     s.arrow((x_g, -0.0064), (x_g + w, -0.0064), "$w$")
 
@@ -180,7 +177,7 @@ def draw_buckling_beam(axes, *, x=0.024, P=1.5, k=90.0, k_3=5e4, **_):
     u, half = s.u, 0.027
     along = np.linspace(-half, half, 25)
     shape = np.cos(0.5 * np.pi * along / half)
-    rest = math.sqrt(max(k * (P - 1) / k_3, 0.0)) if k_3 > 0 else 0.0
+    rest = np.sqrt(np.maximum(k * (P - 1) / np.where(k_3 > 0, k_3, np.inf), 0.0))
     for state in (rest, -rest):
         s.line(*np.column_stack([state * shape, along]).tolist(), width=1.0, color=SOFT, linestyle="--")
     s.line(*np.column_stack([x * shape, along]).tolist(), width=4.0, zorder=3)

@@ -8,6 +8,7 @@ import numpy as np
 from ..analysis.pictures.force_field import ForceField
 from ..analysis.pictures.painting import paint
 from ..analysis.pictures.pictures import drawing_of, named_by
+from ..analysis.pictures.recording import recorded_picture
 from ..analysis.pictures.schematic import Schematic
 from ..base.drawing import house_style, new_figure, png
 from ..errors import AnalysisError
@@ -94,12 +95,34 @@ class MovingPicture:
         -------
         tuple of items, as :mod:`hapticlab.library.display_list` lists them
         """
-        drawn = self._mechanism(values)
-        shown = math.isfinite(values.get("F", 0.0))
-        items = [self._told(item) for item in drawn.items if shown or item[0] != "force"]
-        hand = self._hand(values, items)
+        return self._items(DisplayList(), values)
+
+    def recording(self):
+        """Return the picture as data, which the page of a shared file draws from as :meth:`draw` does.
+
+        Returns
+        -------
+        dict
+            As of :func:`~hapticlab.analysis.pictures.recording.recorded_picture`.
+
+        Raises
+        ------
+        AnalysisError
+            For a drawing function of one's own that does more than NumPy with what moves.
+        """
+        known = {**_defaults(self._drawing), **self.scene.values}
+        inputs = {"x": math.nan, "F": 0.0, "intent": math.nan} | {name: known.get(name, math.nan) for name in sorted(self._names)}
+        name = getattr(self._drawing, "__name__", type(self._drawing).__name__)
+        return recorded_picture(self._items, inputs, name)
+
+    def _items(self, drawn, values):
+        """Draw one moment on a display list, of numbers or of nodes."""
+        self._mechanism(drawn, values)
+        self._hand(drawn, values)
         (left, right), (bottom, top) = drawn.get_xlim(), drawn.get_ylim()
-        return (*items, *hand, ("frame", [(left, bottom), (right, top)], {}))
+        drawn.add("frame", [(left, bottom), (right, top)], zorder=math.inf)
+        shown = np.isfinite(values.get("F", 0.0))
+        return tuple(self._told(item) for item in drawn.items if item[0] != "force" or shown)
 
     def still(self, values):
         """Return one moment as a picture where nothing moves: the bytes of a PNG, and the words for who cannot see it.
@@ -125,27 +148,27 @@ class MovingPicture:
         kind, points, style = item
         return (kind, points, {**style, "full": self.full}) if kind == "force" else item
 
-    def _mechanism(self, values):
-        drawn = DisplayList()
+    def _mechanism(self, drawn, values):
         known = {**self.scene.values, **values}
         with np.errstate(all="ignore"):  # what cannot be put together is left out
             self._drawing(drawn, x=values["x"], **{name: known[name] for name in self._names if name in known})
         return drawn
 
-    def _hand(self, values, items):
-        """The hand, which pulls the handle's knob to where it aims."""
-        intent, handle = values.get("intent"), _handle(items)
-        if handle is None or intent is None or not math.isfinite(intent):
-            return ()
+    def _hand(self, drawn, values):
+        """Draw the hand, which pulls the handle's knob to where it aims."""
+        intent, handle = values.get("intent"), _handle(drawn.items)
+        if handle is None or intent is None:
+            return
         (_, _, (x, y)), style = handle
         way = intent - values["x"]
-        return (("hand", [(x, y), (x + way * self.along[0], y + way * self.along[1])], {"round": style["round"]}),)
+        aim = x + way * self.along[0], y + way * self.along[1]
+        drawn.add("hand", [(x, y), aim], zorder=math.inf, round=style["round"])
 
     def _fit(self):
         """Return the box that shows the mechanism, and the way the handle moves."""
         defaults = _defaults(self._drawing)
         start = {name: defaults.get(name, 0.0) for name in self.channels}
-        near = [self._mechanism({"x": x, **start}) for x in (-1e-3, 1e-3)]
+        near = [self._mechanism(DisplayList(), {"x": x, **start}) for x in (-1e-3, 1e-3)]
         handles = [_handle(drawn.items) for drawn in near]
         moved = np.subtract(handles[1][0][2], handles[0][0][2]) if all(handles) else np.array([1.0, 0.0])
         box = *near[0].get_xlim(), *near[0].get_ylim()

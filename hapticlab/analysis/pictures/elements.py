@@ -169,8 +169,8 @@ def apart(expr):
 
 
 def value_of(expr):
-    """Return (function of a dict of numbers -> float, None where one is not known; names) of a coefficient."""
+    """Return (function of a dict of numbers -> number, None where one is not known; names) of a coefficient."""
     if expr is None:
         return (lambda known: None), frozenset()
     value, names = formula(expr)
-    return (lambda known: float(value(known)[0]) if names <= set(known) else None), names
+    return (lambda known: value(known)[0] if names <= set(known) else None), names

@@ -24,7 +24,7 @@ class ForceField:
 
     def __init__(self, scene):
         self._force, names = formula(scene.force)
-        self.names, self.start, self._values, self._known = set(names) - {"x"}, {"x": 0.0}, dict(scene.values), {}
+        self.names, self.start, self._values = set(names) - {"x"}, {"x": 0.0}, dict(scene.values)
         swing = np.ptp(self._potential(self._values))
         self._scale = HIGH / swing if swing > 0 else 0.0
 
@@ -37,23 +37,14 @@ class ForceField:
 
         s.track(track, x, "$U(x)$", POINTS)
 
-    def _force_at(self, values):
-        """The force [N]; none where the formula has no value."""
-        try:
-            F = float(self._force(values)[0])
-        except (ArithmeticError, TypeError, ValueError):
-            return 0.0
-        return F if np.isfinite(F) else 0.0
-
     def _potential(self, values):
-        """The integral of the force over x, from its smallest value [J]."""
-        key = tuple(values[name] for name in sorted(self.names))
-        if key not in self._known:
-            at = np.linspace(*BOX[:2], POINTS)
-            F = np.array([self._force_at({**values, "x": place}) for place in at.tolist()])
-            U = np.concatenate([[0.0], np.cumsum((F[1:] + F[:-1]) / 2 * np.diff(at))])
-            self._known = {key: U - U.min()}
-        return self._known[key]
+        """The integral of the force over x, from its smallest value [J]; the force is 0 where its formula has no value."""
+        at = np.linspace(*BOX[:2], POINTS)
+        with np.errstate(all="ignore"):
+            F = self._force({**values, "x": at})[0] + np.zeros(POINTS)
+        F = np.where(np.isfinite(F), F, 0.0)
+        U = np.concatenate([[0.0], np.cumsum((F[1:] + F[:-1]) / 2)]) * (BOX[1] - BOX[0]) / (POINTS - 1)
+        return U - np.min(U)
 
 
 def is_field(scene):

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ...library.sketch import THICK, Sketch, clearance
 
 #: how far the handle goes to either side: along the picture, and upright, where there is less room [m]
@@ -55,7 +57,7 @@ class Layout:
         """A hundredth of the picture's width [m], with a pendulum of this length [m] in it."""
         fixed, metres = self.right
         room = HIGH if self.upright else max(WIDE, 1.6 * fixed)  # a long row is drawn smaller
-        return max((metres + self.reach) / (room - fixed - self._left), rod / ROD)
+        return np.maximum((metres + self.reach) / (room - fixed - self._left), rod / ROD)
 
     @property
     def _left(self):

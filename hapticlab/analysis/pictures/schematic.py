@@ -177,7 +177,7 @@ class Schematic:
     def _floor(s, at, half, name):
         """Draw a rough floor below a body, and its friction."""
         u, floor = s.u, -6.0 * s.u
-        rough = np.arange(at - 1.6 * half * u, at + 2 * half * u, 0.8 * u)
+        rough = at + np.arange(-1.6 * half, 2 * half, 0.8) * u
         s.line(*np.column_stack([rough, floor - 0.3 * u * (1 + (-1.0) ** np.arange(len(rough)))]).tolist(), width=1.0, color=SOFT)
         s.ground((at - 1.6 * half * u, floor - 0.6 * u), (at + 2 * half * u, floor - 0.6 * u))
 
@@ -193,23 +193,23 @@ class Schematic:
             rod = self.rods[name][0](state)
         except (KeyError, TypeError, ValueError, ZeroDivisionError):
             rod = None
-        true = rod and np.isfinite(rod) and _symbol(self.parts.rods[name])
+        true = rod is not None and _symbol(self.parts.rods[name]) and np.isfinite(rod) & (rod != 0)
         return (rod, True) if true else (1.0, False)
 
     def _turning(self, s, at, state, rods):
         """Draw what turns: hanging from or standing on what carries it, else a dial."""
         free, u = s.right, s.u
-        pivots = {name: np.array([place, 0.0]) for name, place in at.items()}
+        pivots = {name: np.stack([place, 0.0]) for name, place in at.items()}
         for name, carrier in self.carried.items():
             turn, (rod, true) = state[name], rods[name]
             if carrier in pivots:
                 rod = rod if true else np.sign(rod) * 0.9 * ROD * u
                 pivot, rest = pivots[carrier], (1 if self.stands[name] else -1) * np.pi / 2
                 angle = rest - np.sign(rest) * np.sign(rod) * turn
-                pivots[name] = bob = pivot + abs(rod) * np.array([np.cos(angle), np.sin(angle)])
+                pivots[name] = bob = pivot + abs(rod) * np.stack([np.cos(angle), np.sin(angle)])
                 s.line(pivot, pivot + [0, np.sign(rest) * abs(rod)], width=0.8, color=SOFT, linestyle="--")
                 letter = _symbol(self.parts.rods[name]) if true else "not to scale"
-                aside = 2.6 if np.cos(angle) >= 0 else -2.6
+                aside = np.where(np.cos(angle) >= 0, 2.6, -2.6)
                 s.rod(pivot, bob, letter, right=aside, width=2.5)
                 s.disc(bob, 1.9 * u, zorder=5, name=name)
                 s.text(bob, _symbol(self.parts.bobs.get(name)), right=4.2)

@@ -32,14 +32,14 @@ class Outline:
     def draw(self, s, state):
         """Draw it on a sketch, as the state (a dict of numbers) has it."""
         x, y, angle, radius, *corners = self._numbers(state)
-        turned = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        place = np.array([x, y])
+        turned = np.reshape(np.stack([np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle)]), (2, 2))
+        place = np.stack([x, y])
         if self.is_ground:
             half = (s.right - s.left) / 2
-            middle = (turned @ (np.array([(s.left + s.right) / 2, (s.bottom + s.top) / 2]) - place))[0]
-            s.ground(*(np.array([[middle - half, 0], [middle + half, 0]]) @ turned + place))
+            middle = (turned @ (np.stack([(s.left + s.right) / 2, (s.bottom + s.top) / 2]) - place))[0]
+            s.ground(*(np.reshape(np.stack([middle - half, 0, middle + half, 0]), (2, 2)) @ turned + place))
             return
-        corners = np.reshape(corners, (-1, 2))
+        corners = np.reshape(np.stack(corners), (-1, 2))
         for size in self.cores:
             core, corners = corners[:size], corners[size:]
             s.area(rim(core, radius) @ turned + place, color=BODY)
@@ -53,7 +53,6 @@ def rim(core, radius):
     >>> rim(np.array([[0.0, 0.0]]), 1.0).max(axis=0).round(3)
     array([1., 1.])
     """
-    core = np.asarray(core, float)
     if len(core) == 1:
         return core + radius * _arc(0.0, 2 * np.pi, 4 * TURNS)
     if radius == 0:

@@ -4,9 +4,9 @@ from functools import reduce
 from operator import and_, or_
 
 import numpy as np
-import sympy as sp
 
-from .plain_formulas import HANDLE
+from .plain_formulas import HANDLE, formula
+from .recording import recorded
 from .wall_boundaries import regions
 
 #: a body that rests on another is found so far above it, by rounding and by the steps of a method [m]
@@ -48,16 +48,41 @@ def touching(scene, watched=()):
     found = [told for region in regions(scene) if (told := tuple(filter(is_told, region)))]
     if not found:
         return None
-    symbols = sorted(set().union(*(depth.free_symbols for region in found for depth in region)), key=str)
-    names = [symbol.name for symbol in symbols]
-    values = sp.lambdify(symbols, found, "numpy")
+    depths = [formula(*region) for region in found]
+    names = frozenset().union(*(names for _, names in depths))
 
     def touched(samples, parameters):
         known = {**parameters, **samples}
-        if not known.keys() >= set(names):  # a record of another scene
+        if not known.keys() >= names:  # a record of another scene
             return np.full(len(samples["x"]), np.nan)
         with np.errstate(all="ignore"):
-            inside = [reduce(and_, (depth >= -CLOSE for depth in region)) for region in values(*(known[name] for name in names))]
+            inside = [reduce(and_, (depth >= -CLOSE for depth in values(known))) for values, _ in depths]
         return (reduce(or_, inside) & (samples["F"] != 0)).astype(float)
 
     return touched
+
+
+def recorded_touching(scene, watched=()):
+    """Return :func:`touching` of one sample as data, or None where the scene has nothing to touch.
+
+    Parameters
+    ----------
+    scene, watched
+        As for :func:`touching`.
+
+    Returns
+    -------
+    dict or None
+        As of :func:`~hapticlab.analysis.pictures.recording.recorded`: of x, F, t, the coordinates and the parameters by name.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> recorded_touching(hl.wall()(k=300, x_o=0.01))["inputs"]
+    [['x', 'NaN'], ['F', 'NaN'], ['x_o', 0.01]]
+    """
+    touched = touching(scene, watched)
+    if touched is None:
+        return None
+    inputs = dict.fromkeys(["x", "F", "t", *watched, *scene.parameters], np.nan) | dict(scene.values)
+    return recorded(lambda known: touched(known, {}), inputs, scene.name)
