@@ -12,15 +12,13 @@ LONG = 20_000
 _PATHS = re.compile(r"""(?:^|["'\s=(])(?:/(?:home|Users|root|mnt|media|tmp|var)/\S|[A-Za-z]:\\|\\\\\w)""", re.MULTILINE)
 
 
-def shared_code(scene, paddle, name, **options):
+def shared_code(scene, paddle, **options):
     """Return (Python before the visitor's values, Python after them), or None where the scene cannot be written out.
 
     Parameters
     ----------
     scene : Scene
     paddle : SimulatedPaddle
-    name : str
-        Of the file.
     **options
         Of ``hl.share``, as they were given; one that cannot be written, such as a function that draws, is named and left out.
 
@@ -28,20 +26,20 @@ def shared_code(scene, paddle, name, **options):
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle.from_profile("eth", T=5e-4, hand=hl.Hand(k=500, b=2))
-    >>> print(*shared_code(hl.wall(k=300, x_o=0.01), paddle, "wall.html", time_scale=0.5), sep="", end="")
+    >>> print(*shared_code(hl.wall(k=300, x_o=0.01), paddle, time_scale=0.5), sep="", end="")
     import hapticlab as hl
     <BLANKLINE>
     scene = hl.wall("zoh")
     scene = scene(x_o=0.01, k=300.0)
     paddle = hl.SimulatedPaddle.from_profile("eth", T=0.0005, hand=hl.Hand(b=2.0, k=500.0))
-    hl.share(scene, paddle, "wall.html", time_scale=0.5)
+    hl.share(scene, paddle, time_scale=0.5)
     """
     written = scene_code(scene)
     if written is None:
         return None
     call = "".join(f", {option}={value!r}" for option, value in options.items() if _is_plain(value))
     left_out = "".join(f"  # {option}=... was given as well" for option, value in options.items() if not _is_plain(value))
-    return f"{written}\n", f'paddle = {_paddle(paddle)}\nhl.share(scene, paddle, "{name}"{call}){left_out}\n'
+    return f"{written}\n", f"paddle = {_paddle(paddle)}\nhl.share(scene, paddle{call}){left_out}\n"
 
 
 def why_private(text):

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from functools import cache
 
 import sympy as sp
 from sympy.printing.str import StrPrinter
@@ -61,12 +62,20 @@ def values_code(values):
     return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
 
+def library_name(scene):
+    """Return the name that a scene has in the library, or nothing where it is not of the library."""
+    return next((name for name, made in _library().items() if _bare(made) == _bare(scene)), "")
+
+
 def _ready():
     """Yield calls that make a scene, and the scene."""
-    for law in TAPS:
-        yield f'hl.wall("{law}")', wall(law)
-    for name, entry in CATALOGUE.items():
-        yield f"hl.library.{name}()", entry.scene()
+    yield from ((f'hl.wall("{law}")', wall(law)) for law in TAPS)
+    yield from ((f"hl.library.{name}()", made) for name, made in _library().items())
+
+
+@cache
+def _library():
+    return {name: entry.scene() for name, entry in CATALOGUE.items()}
 
 
 def _bare(scene):

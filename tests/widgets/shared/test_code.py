@@ -71,9 +71,9 @@ def test_a_scene_that_cannot_be_written_out_gives_no_code():
     with_contact = CATALOGUE["ball_on_the_paddle"].scene()
     other = hl.Scene(force=with_contact.force, eom=with_contact.eom, watch=with_contact.watch, name="of my own")
     assert scene_code(other) is None
-    assert shared_code(other, PADDLE, "a.html") is None
-    _, after = shared_code(own_scene(), PADDLE, "a.html", picture=np.sin)
-    assert after.endswith('hl.share(scene, paddle, "a.html")  # picture=... was given as well\n')
+    assert shared_code(other, PADDLE) is None
+    _, after = shared_code(own_scene(), PADDLE, picture=np.sin)
+    assert after.endswith("hl.share(scene, paddle)  # picture=... was given as well\n")
 
 
 PADDLES = [PADDLE, hl.SimulatedPaddle.from_profile("hapkit", b=0.5), hl.SimulatedPaddle(m=0.05, b=0, T=1e-3)]
@@ -83,10 +83,10 @@ PADDLES = [PADDLE, hl.SimulatedPaddle.from_profile("hapkit", b=0.5), hl.Simulate
 def test_the_code_makes_the_paddle_and_the_same_run(paddle, monkeypatch):
     calls = []
     monkeypatch.setattr(hl, "share", lambda *given, **options: calls.append((given, options)), raising=False)
-    before, after = shared_code(hl.library.gears()(K=300), paddle, "gears.html", time_scale=0.1, sliders={"K": (100, 400)})
+    before, after = shared_code(hl.library.gears()(K=300), paddle, time_scale=0.1, sliders={"K": (100, 400)})
     made_by(before + after)
-    (((scene, made, file), options),) = calls
-    assert scene == hl.library.gears()(K=300) and file == "gears.html"
+    (((scene, made), options),) = calls
+    assert scene == hl.library.gears()(K=300)
     assert options == {"time_scale": 0.1, "sliders": {"K": (100, 400)}}
     made, led = with_grip(made), with_grip(paddle)  # by a visitor, not by the intent of the paddle's own hand
     assert replace(made, profile=None) == replace(led, profile=None)

@@ -73,3 +73,12 @@ function crc32(bytes, start = 0) {
   for (const byte of bytes) crc = table[(crc ^ byte) & 255] ^ (crc >>> 8)
   return ~crc >>> 0
 }
+
+// The same as a table in text, with units in its head: what Telemetry.to_csv writes.
+function recordTable({ columns }, { units, force_max }) {
+  const names = [...OWN_COLUMNS, ...Object.keys(columns).filter((name) => !OWN_COLUMNS.includes(name))]
+  const limited = force_max !== null && columns.F.some((force) => Math.abs(force) >= force_max)
+  const head = [...names.map((name) => `${name} [${units[name] ?? "1"}]`), ...(limited ? ["saturated"] : [])]
+  const row = (_, k) => [...names.map((name) => columns[name][k]), ...(limited ? [Number(Math.abs(columns.F[k]) >= force_max)] : [])].join(",")
+  return [head.join(","), ...Array.from(columns.t, row)].join("\n").replaceAll("NaN", "nan") + "\n"
+}

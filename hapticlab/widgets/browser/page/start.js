@@ -1,18 +1,28 @@
 // What a shared file does when it is opened: it takes the data out of the page, and shows the view where they run.
 
+const NO_WEBASSEMBLY = "This browser does not run WebAssembly, which the scene needs. Open the page in a current browser. An iPhone or iPad "
+  + "runs it from a web address, not from a file."
+
 async function openShared(told) {
+  if (typeof WebAssembly === "undefined") throw new Error(NO_WEBASSEMBLY)
   const loops = Object.entries(told.programs)
   const programs = await Promise.all(loops.map(([, each]) => Program.open(each)))
   const picture = new PlainPicture(told.about, told.full)
   const touching = (samples) => new Float64Array(samples.x.length).fill(NaN)
-  const save = () => "Nothing here keeps a record"
+  const save = (log) => keepRecord(log, told)
   return new PageSource(told, Object.fromEntries(loops.map(([name], k) => [name, programs[k]])), { picture, touching, save })
 }
 
-if (typeof document !== "undefined") {
-  const place = document.getElementById("hl-view")
-  openShared(JSON.parse(document.getElementById("hl-data").textContent)).then(
-    (source) => new View(source, place),
-    (problem) => place.append(`This browser cannot run the scene: ${problem.message}`),
-  )
+// Show the scene in its place, and what stands around it; where it cannot run, the words that are there say what to do.
+async function begin(told, place) {
+  const waiting = [...place.children]
+  try {
+    const source = await openShared(told)
+    for (const each of waiting) each.remove()
+    new Page(source, new View(source, place), told)
+  } catch (problem) {
+    place.append(make("p", { role: "alert" }, [problem.message]))
+  }
 }
+
+if (typeof document !== "undefined") begin(JSON.parse(document.getElementById("hl-data").textContent), document.getElementById("hl-view"))

@@ -1,0 +1,168 @@
+// What stands around the view in a shared file: values in the address, buttons for the whole page, the code to copy, and files
+// that a visitor keeps.
+
+const SLOW_MOTION = "slow-motion"
+const WRITTEN_AFTER = 200 // [ms] after a change: a slider that is dragged writes once
+const PAGE_BUTTONS = {
+  step: { key: "N", word: "Next tick", title: "pause, and advance by one sampling period" },
+  table: { key: "C", word: "CSV", title: "save the recording as a table" },
+  reset: { key: "X", word: "Reset all", title: "values, motion and address as in the file" },
+}
+
+class Page {
+  // source: of the view; told: the data of the page
+  constructor(source, view, told) {
+    Object.assign(this, { source, view, told })
+    this.words = { parameters: told.parameters, units: told.metric, flags: [SLOW_MOTION] }
+    this.said = document.getElementById("hl-told")
+    this.code = document.getElementById("hl-code")
+    source.changed = () => this.changed()
+    this.buildButtons()
+    this.buildCopy()
+    this.readAddress()
+    window.addEventListener("hashchange", () => this.readAddress())
+    view.root.addEventListener("painted", () => this.showButtons())
+  }
+
+  // --- the address
+
+  // Set what the address names, and nothing else; say what cannot be set.
+  readAddress() {
+    const { values, flags, problems } = readAddress(location.hash, this.words)
+    const own = Object.fromEntries(this.told.parameters.map(({ name, value }) => [name, value]))
+    for (const parameter of this.told.parameters) {
+      const { name } = parameter
+      const words = name in values && outside(parameter, values[name])
+      if (words) problems.push(words)
+      else own[name] = values[name] ?? own[name]
+    }
+    const refused = this.source.set(own)
+    if (flags.includes(SLOW_MOTION) !== this.isSlow) this.source.press("slow")
+    this.tell(refused ? [...problems, refused] : problems)
+  }
+
+  get isSlow() {
+    return this.source.motion.speed === this.told.about.slow && this.told.about.speed !== this.told.about.slow
+  }
+
+  tell(problems) {
+    this.said.replaceChildren(...problems.slice(0, 3).map((words) => make("span", {}, [words])))
+    if (problems.length > 3) this.said.append(make("span", {}, [`${problems.length - 3} more parts of the address are not understood.`]))
+  }
+
+  changed() {
+    clearTimeout(this.writing)
+    this.writing = setTimeout(() => this.write(), WRITTEN_AFTER)
+  }
+
+  write() {
+    const values = this.source.values
+    const address = writeAddress(values, this.isSlow ? [SLOW_MOTION] : [], this.words)
+    if (this.code) this.code.textContent = codeWith(values, this.told)
+    try {
+      if (address !== location.hash) history.replaceState(null, "", location.href.split("#")[0] + address)
+    } catch {
+      // a page in a frame of its own, or of a file, may not: it then forgets what was changed
+    }
+  }
+
+  // --- buttons and their keys
+
+  buildButtons() {
+    this.buttons = {}
+    for (const [name, { key, word, title }] of Object.entries(PAGE_BUTTONS)) {
+      const shown = [word, " ", make("kbd", { "aria-hidden": "true" }, [key])]
+      this.buttons[name] = make("button", { type: "button", title, "aria-keyshortcuts": key }, shown)
+      this.buttons[name].addEventListener("click", () => this.press(name))
+    }
+    this.view.controls.row.append(...Object.values(this.buttons))
+    const keys = Object.entries(PAGE_BUTTONS).map(([, { key, word }]) => `${key} ${word.toLowerCase()}`).join(", ")
+    this.view.root.querySelector(".hl-help").append(make("p", {}, [`Of this page: ${keys}. Keys act while the view has the focus.`]))
+    this.view.root.addEventListener("keydown", (event) => this.key(event))
+    this.showButtons()
+  }
+
+  // Only inside the view, and not while something is typed.
+  key(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey || event.target.type === "text") return
+    const name = Object.keys(PAGE_BUTTONS).find((each) => PAGE_BUTTONS[each].key === event.key.toUpperCase())
+    if (!name || (event.repeat && name !== "step")) return
+    event.preventDefault()
+    this.press(name)
+  }
+
+  showButtons() {
+    const { replaying, recorded } = this.view.flags
+    const off = { step: replaying, table: !recorded, reset: false }
+    for (const [name, button] of Object.entries(this.buttons)) button.setAttribute("aria-disabled", Boolean(off[name]))
+  }
+
+  press(name) {
+    if (this.buttons[name].getAttribute("aria-disabled") === "true") return
+    if (name === "step") this.step()
+    else if (name === "table") this.source.say(keepTable(this.source.recorded(), this.told))
+    else this.reset()
+    this.source.look()
+  }
+
+  step() {
+    const { stepping } = this.source
+    this.source.step()
+    this.source.say(`Tick ${stepping.ticks}: t = ${general(1e3 * stepping.ticks * stepping.T)} ms`)
+  }
+
+  reset() {
+    if (this.view.traces.zoomed) this.view.zoom()
+    this.source.reset()
+    this.tell([])
+    this.write()
+  }
+
+  // --- the code to copy
+
+  buildCopy() {
+    const button = document.getElementById("hl-copy")
+    if (!button) return
+    button.hidden = false
+    button.addEventListener("click", async () => {
+      document.getElementById("hl-copied").textContent = await copied(this.code)
+    })
+  }
+}
+
+// The Python of a page with the values that a visitor chose.
+function codeWith(values, { code: [before, after], parameters }) {
+  const changed = parameters.filter(({ name, value }) => values[name] !== value).map(({ name }) => `${name}=${values[name]}`)
+  return before + (changed.length ? `scene = scene(${changed.join(", ")})  # as on this page\n` : "") + after
+}
+
+// Copy an element's text, or where that is not allowed select it; return what was done, in words.
+async function copied(element) {
+  try {
+    await navigator.clipboard.writeText(element.textContent)
+    return "Copied."
+  } catch {
+    getSelection().selectAllChildren(element)
+    return "Selected. Copy it with Ctrl+C, or Cmd+C on a Mac."
+  }
+}
+
+// Keep a record as files of the browser; return words on them.
+function keepRecord(log, told) {
+  const name = keepFile(recordFile(log, told), told.scene, "npz", "application/zip")
+  return `Saved ${name}, see your downloads: hl.records.Telemetry.load reads it`
+}
+
+function keepTable(log, told) {
+  return `Saved ${keepFile(new TextEncoder().encode(recordTable(log, told)), told.scene, "csv", "text/csv")}, see your downloads`
+}
+
+function keepFile(bytes, scene, ending, type) {
+  const stem = scene.replace(/[^\p{L}\p{N}]+/gu, "_").replace(/^_+|_+$/g, "") || "scene"
+  keepFile.count = (keepFile.count ?? 0) + 1
+  const name = `${stem}-${keepFile.count}.${ending}`
+  const address = URL.createObjectURL(new Blob([bytes], { type }))
+  make("a", { href: address, download: name }).click()
+  setTimeout(() => URL.revokeObjectURL(address), 60_000)
+  return name
+}
