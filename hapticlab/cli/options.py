@@ -106,6 +106,8 @@ def _add_share(commands, shared):
     made.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
     made.add_argument("--method", metavar="NAME", help="integrator of the equations of motion (default: rk4)")
     made.add_argument("--let-go", action="store_true", help="a drag that ends lets go of the handle, so that it can be thrown")
+    words = "let readers of the page copy the text of FILE.py, or not (default: ask; yes where nobody can be asked)"
+    made.add_argument("--code", action=argparse.BooleanOptionalAction, help=words)
     made.set_defaults(duration=None)
     return made
 

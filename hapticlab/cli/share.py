@@ -1,7 +1,10 @@
 """What the command line does with a scene that is shared: one file for any browser."""
 
+import sys
 from pathlib import Path
 
+from ..widgets.shared.code import why_private
+from ..widgets.shared.scene_code import values_code
 from ..widgets.shared.share import share as write_file
 from .scenes import compiling, opened, tell
 
@@ -10,7 +13,8 @@ def share(parser, options):
     """Write a scene file as a file for any browser, and say what it runs."""
     chosen = compiling(parser, options)
     file, path = opened(parser, options), Path(options.file)
-    shared = write_file(file.scene, file.paddle, options.out or f"{path.stem}.html", let_go=options.let_go, **chosen)
+    code = _code(path.read_text("utf-8"), options) if _may_be_copied(path, options) else False
+    shared = write_file(file.scene, file.paddle, options.out or f"{path.stem}.html", let_go=options.let_go, code=code, **chosen)
     program = file.paddle.program(file.scene, **chosen)
     values = {c.name: value for c, value in zip(program.parameters, program.values, strict=True)}
     facts = {
@@ -27,3 +31,24 @@ def share(parser, options):
         f"size     {shared.bytes / 1000:.0f} kB. Open it by a double click; it needs no network",
     )
     return tell(options, facts, {"file": shared.path}, "\n".join(lines))
+
+
+def _may_be_copied(path, options):
+    """Tell whether readers may copy the text of the scene file; ask, where there is someone to ask."""
+    if options.code is not None:
+        return options.code
+    why = why_private(path.read_text("utf-8"))
+    if options.json or not sys.stdin.isatty():
+        return not why
+    doubt = f" ({why})" if why else ""
+    print(f"Let readers of the page copy the text of {path.name}{doubt}? [{'y/N' if why else 'Y/n'}] ", end="", file=sys.stderr)
+    answer = sys.stdin.readline().strip().lower()
+    return answer in ("y", "yes") if why else answer not in ("n", "no")
+
+
+def _code(text, options):
+    """Return the text of a scene file, with the values and options of the command line."""
+    more = [f"scene = scene({values_code(dict(options.set))})"] if options.set else []
+    given = [f"--{name} {value}" for name in ("T", "method") if (value := getattr(options, name))]
+    more += [f"# shared with {' '.join(given)}"] if given else []
+    return "\n".join([text.rstrip(), *more]) + "\n"

@@ -1,10 +1,12 @@
 """hapticlab share writes a scene file as one page, with what the command line sets."""
 
+import io
 import json
 import re
 
 import pytest
 
+import hapticlab as hl
 from hapticlab.cli import main
 
 SCENE = "import hapticlab as hl\nscene = hl.wall()(k=200, x_o='10 mm')\n"
@@ -43,3 +45,33 @@ def test_share_refuses_what_cannot_be_set(scene_file, capsys):
         main.main(["share", "soft.py", "--set", "K=5"])
     assert "K" in capsys.readouterr().err
     assert not list(scene_file.glob("*.html"))
+
+
+def test_readers_copy_the_text_of_the_file_with_what_was_set(scene_file, capsys):
+    assert main.main(["share", "soft.py", "--set", "k=0.4 N/mm", "--set", "x_o=0.02", "--method", "euler"]) == 0
+    code = "".join(data_of(scene_file / "soft.html")["code"])
+    assert code.startswith(SCENE) and "--method euler" in code
+    names = {}
+    exec(code, names)
+    assert names["scene"] == hl.wall()(k=400, x_o=0.02)
+
+
+@pytest.mark.parametrize(
+    ("text", "answer", "given", "shown"),
+    [
+        (SCENE, "", [], True),
+        (SCENE, "n", [], False),
+        (SCENE, "n", ["--code"], True),
+        (SCENE, "y", ["--no-code"], False),
+        (SCENE + "data = '/home/ada/lab'\n", "", [], False),
+        (SCENE + "data = '/home/ada/lab'\n", "y", [], True),
+    ],
+)
+def test_readers_copy_the_text_unless_it_is_refused_or_private(scene_file, monkeypatch, text, answer, given, shown):
+    asked = io.StringIO(f"{answer}\n")
+    monkeypatch.setattr(asked, "isatty", lambda: True)
+    monkeypatch.setattr("sys.stdin", asked)
+    (scene_file / "soft.py").write_text(text)
+    assert main.main(["share", "soft.py", *given]) == 0
+    assert (data_of(scene_file / "soft.html")["code"] is not None) == shown
+    assert ("ada" in (scene_file / "soft.html").read_text()) == (shown and "ada" in text)

@@ -24,13 +24,18 @@ def lead(scene):
     --------
     >>> import hapticlab as hl
     >>> lead(hl.library.stick_slip())
-    "Stick-slip: a block on a rough floor, pulled by the handle through the coupler's spring."
+    "A block on a rough floor, pulled by the handle through the coupler's spring."
     >>> lead(hl.wall()(k=300, x_o=0.01))
     'A simulated paddle with the scene zoh wall: drag its handle, or move it with the arrow keys.'
     """
     known = library_name(scene)
     own = f"A simulated paddle with the scene {scene.name}: drag its handle, or move it with the arrow keys."
-    return CATALOGUE[known].title if known else own
+    if not known:
+        return own
+    title = CATALOGUE[known].title.removesuffix(".")
+    head, _, rest = title.partition(": ")
+    said = rest if head.lower() == scene.name else title
+    return f"{said[0].upper()}{said[1:]}."
 
 
 def body(scene, code):

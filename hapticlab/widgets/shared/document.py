@@ -11,11 +11,17 @@ from ..browser_view import BROWSER, SCRIPTS
 #: what a view is made of, without a notebook's source
 VIEW_SCRIPTS = tuple(script for script in SCRIPTS if script != "kernel.js")
 LICENCE = "Copyright (c) 2026, the hapticlab developers. BSD 3-Clause License."
+#: a handle at a wall, 32 pixels wide
+ICON = (
+    "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 32 32'%3E%3Crect width='32' height='32' rx='6' "
+    "fill='%23fff'/%3E%3Cpath d='M22 4h6v24h-6z' fill='%23888'/%3E%3Cpath d='M4 15h11v2H4z' fill='%23cc5a1a'/%3E%3Ccircle "
+    "cx='16' cy='16' r='5' fill='%231a4b84'/%3E%3C/svg%3E"
+)
 #: what stands for everything that the page may do: no address but itself, and none of its own scripts by eval
 POLICY = "default-src 'none'; script-src {script}; style-src {style}; img-src data: blob:; base-uri 'none'; form-action 'none'"
 
 
-def document(title, main, data, *, scripts, styles, wasm=True):
+def document(title, main, data, *, scripts, styles, wasm=True, description=""):
     """Return the text of a page.
 
     Parameters
@@ -29,8 +35,11 @@ def document(title, main, data, *, scripts, styles, wasm=True):
         In the folder of the view's own, the scripts in the order in which they run.
     wasm : bool
         Whether the page may compile WebAssembly.
+    description : str
+        A sentence for search engines and previews.
     """
     style, script = read(styles), _closed(read(scripts))
+    about = f'<meta name="description" content="{escape(description)}">\n' if description else ""
     policy = POLICY.format(script=_hash(script) + (" 'wasm-unsafe-eval'" if wasm else ""), style=_hash(style))
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -39,7 +48,9 @@ def document(title, main, data, *, scripts, styles, wasm=True):
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="generator" content="hapticlab {__version__}">
+{about}<meta name="color-scheme" content="light dark">
 <title>{escape(title)}</title>
+<link rel="icon" href="{ICON}">
 <style>{style}</style>
 </head>
 <body>

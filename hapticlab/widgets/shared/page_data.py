@@ -4,6 +4,7 @@ import base64
 import math
 from dataclasses import replace
 
+from ...base.telemetry import UNITS
 from ...compiler.engines.wasm_emit import emit
 from ...compiler.ir.notes import why_of
 from ...compiler.tick.live_limits import limits_apart
@@ -39,7 +40,7 @@ def page_data(stage):
         "delay": paddle.delay,
         "sensor_delay": paddle.sensor_delay,
         "paddle": str(paddle),
-        "units": {**program.units, "intent": "m"},
+        "units": {**UNITS, **program.units, "intent": "m"},
         "start": stage.source.place,
         "seed": paddle.seed,
         "force_max": paddle.force_max,

@@ -15,8 +15,11 @@ from ...errors import PaddleError
 from ...scene.scene import check_scene
 from ..live import SPEEDS
 from ..stage import Stage
+from .around import body, lead
+from .code import shared_code
 from .page import page
 from .page_data import page_data
+from .units import units
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,6 +37,7 @@ def share(
     time_scale: float = 1.0,
     picture: Any = None,
     let_go: bool = False,
+    code: str | bool = True,
     **compile_options: Any,
 ) -> SharedFile:
     """Write a scene on a simulated paddle as one HTML file that runs in any browser, without Python and without a network.
@@ -53,6 +57,9 @@ def share(
         The file to write; a file of that name is replaced. By default the name of the scene, in the current folder.
     sliders, time_scale, picture, let_go
         As for :func:`hapticlab.live`.
+    code : str or bool
+        The Python that readers of the page can copy: a text such as that of your own file; True for a text that is made from
+        the scene, where it can be written out; False for none.
     **compile_options
         Of hapticlab.compile: method, substeps, hold, dtype.
 
@@ -89,10 +96,23 @@ def share(
     speed = number("time_scale", time_scale, "", "a shared file", least=slowest, most=fastest, why=why, error=PaddleError)
     looks = {"sliders": sliders, "speed": speed, "picture": picture, "let_go": let_go}
     stage = Stage(paddle, scene, clock=time.monotonic, **looks, **compile_options)
-    text = page(page_data(stage))
+    given = {name: value for name, value in (("sliders", sliders), ("picture", picture)) if value is not None}
+    given |= {
+        name: value for name, value, usual in (("time_scale", speed, 1.0), ("let_go", bool(let_go), False)) if value != usual
+    }
+    python = _code(code, scene, paddle, given | compile_options)
+    data = page_data(stage) | {"metric": units(), "code": python}
+    text = page(data, lead(scene), body(scene, python))
     path = Path(_file_name(scene.name) if path is None else path)
     path.write_text(text, "utf-8")
     return SharedFile(path, len(text.encode()), stage.source.program.name)
+
+
+def _code(code, scene, paddle, given):
+    """Return Python before and after a visitor's values, or None."""
+    if isinstance(code, str):
+        return f"{code.rstrip()}\n", ""
+    return shared_code(scene, paddle, **given) if code else None
 
 
 @dataclass(frozen=True)

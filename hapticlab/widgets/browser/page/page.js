@@ -131,7 +131,8 @@ class Page {
 }
 
 // The Python of a page with the values that a visitor chose.
-function codeWith(values, { code: [before, after], parameters }) {
+function codeWith(values, { code, parameters }) {
+  const [before, after] = code
   const changed = parameters.filter(({ name, value }) => values[name] !== value).map(({ name }) => `${name}=${values[name]}`)
   return before + (changed.length ? `scene = scene(${changed.join(", ")})  # as on this page\n` : "") + after
 }

@@ -85,6 +85,7 @@ class PageSource {
 
   slow() {
     this.motion.passAt(this.motion.speed === this.about.slow ? this.usual : this.about.slow)
+    this.changed?.(this.values)
   }
 
   record() {
