@@ -18,8 +18,8 @@ from hapticlab.grading.export.gradebook import push
 from hapticlab.grading.export.nbgrader_source import nbgrader_notebook
 from hapticlab.grading.report import ExerciseReport, Report
 
-nbgrader_api = pytest.importorskip("nbgrader.api")
-CsvExportPlugin = pytest.importorskip("nbgrader.plugins.export").CsvExportPlugin
+if importlib.util.find_spec("nbgrader") is None:  # to import it takes two seconds of every process that collects
+    pytest.skip("needs nbgrader", allow_module_level=True)
 TWO = ("01", "02")
 #: nbgrader needs four seconds to load: what one process can do is done in one, by the calls behind its commands
 CALLS = """
@@ -68,16 +68,24 @@ def course(tmp_path_factory):
     return course
 
 
+def gradebook(course):
+    from nbgrader.api import Gradebook
+
+    return Gradebook(f"sqlite:///{course / 'gradebook.db'}")
+
+
 def scores(course):
     """Return what the gradebook holds: (lab, student) to score."""
-    with nbgrader_api.Gradebook(f"sqlite:///{course / 'gradebook.db'}") as book:
+    with gradebook(course) as book:
         found = [one for assignment in book.assignments for one in assignment.submissions]
         return {(one.assignment.name[:2], one.student_id): one.score for one in found}
 
 
 def exported(course):
     """Return what nbgrader exports: (lab, student) to score."""
-    with nbgrader_api.Gradebook(f"sqlite:///{course / 'gradebook.db'}") as book:
+    from nbgrader.plugins.export import CsvExportPlugin
+
+    with gradebook(course) as book:
         CsvExportPlugin(to=str(course / "grades.csv")).export(book)
     with (course / "grades.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
