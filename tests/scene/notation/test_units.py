@@ -31,7 +31,7 @@ z = hl.coordinate("z", unit="m")
     ],
 )
 def test_the_unit_of_an_expression_is_what_pint_computes(expression, unit):
-    registry = pint.UnitRegistry()
+    registry = pint.get_application_registry()  # a new one takes 0.1 s
     assert registry.Unit(unit_of(expression)).is_compatible_with(unit) or unit_of(expression) == unit
     assert registry.Quantity(1, unit_of(expression)).to(unit).magnitude == pytest.approx(1, abs=1e-15)
 
