@@ -1,13 +1,23 @@
 """Whether this program ran all the time: to a board, a laptop that slept or a process that was stopped is a silent host."""
 
 import time
+from contextlib import suppress
 
 from .messages import HOST_SILENCE_MS
 
 #: s; a board that has heard nothing for so long has switched its motor off
 LONGEST_PAUSE = HOST_SILENCE_MS / 1000
-#: clocks of the system that go on while the computer sleeps, best first; Linux stops its CLOCK_MONOTONIC then
-_CLOCKS = [getattr(time, name) for name in ("CLOCK_BOOTTIME", "CLOCK_MONOTONIC") if hasattr(time, name)]
+
+
+def _clocks():
+    """Clocks of the system that go on while the computer sleeps, best first; Linux stops its CLOCK_MONOTONIC then."""
+    for name in ("CLOCK_BOOTTIME", "CLOCK_MONOTONIC"):
+        with suppress(AttributeError, OSError):  # the second in a browser, which has a number for it and no such clock
+            time.clock_gettime(getattr(time, name))
+            yield getattr(time, name)
+
+
+_CLOCKS = [*_clocks()]
 
 
 def sleepless():
