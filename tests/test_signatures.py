@@ -9,8 +9,9 @@ RECORDS = {
     "hl.SimulatedPaddle", "hl.Device", "hl.devices.PaddleProfile", "hl.records.Telemetry", "hl.mechanics.Mechanics",
     "hl.people.Task", "hl.design.CompensationLimit", "hl.methods.Method",
 }  # fmt: skip
-#: nine: keywords that pass through paddle.run, live and many tests as they are; and for hl.live what a first view needs
-NINE = {"hl.compile", "hl.sweep", "hl.live"}
+#: nine: keywords that pass through paddle.run, live and many tests as they are; and for hl.live and hl.share what a first view
+#: needs, by the same names
+NINE = {"hl.compile", "hl.sweep", "hl.live", "hl.share"}
 
 
 def counts():

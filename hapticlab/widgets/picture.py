@@ -68,12 +68,10 @@ class MovingPicture:
         Unit vector along which the handle moves, and a pointer has to.
     reach : (low, high)
         How far a hand goes [m]: about the travel of a Hapkit's handle.
-    full : float
-        The force that colours and arrows show in full [N].
     """
 
     def __init__(self, scene, drawing, full_force):
-        self.scene, self._drawing, self.full = scene, drawing, full_force
+        self.scene, self._drawing, self._full = scene, drawing, full_force
         names = named_by(drawing)
         self.channels = {type(q).__name__: q for q in scene.coordinates if type(q).__name__ in names}
         self._names = names & ({*self.channels, "t", "T"} | set(scene.parameters))
@@ -146,7 +144,7 @@ class MovingPicture:
 
     def _told(self, item):
         kind, points, style = item
-        return (kind, points, {**style, "full": self.full}) if kind == "force" else item
+        return (kind, points, {**style, "full": self._full}) if kind == "force" else item
 
     def _mechanism(self, drawn, values):
         known = {**self.scene.values, **values}

@@ -4,6 +4,7 @@ import base64
 import math
 from dataclasses import replace
 
+from ...analysis.pictures.touching import recorded_touching
 from ...base.telemetry import UNITS
 from ...compiler.engines.wasm_emit import emit
 from ...compiler.ir.notes import why_of
@@ -28,8 +29,9 @@ def page_data(stage):
         ``about``, as a view has it. ``programs``: of the loop with a hand on the handle, ``held``, and without, ``free``,
         the ``code`` of a module of the engine wasm in base64 and the names of its inputs, parameters, states and outputs.
         ``plant``: of both, the values of the parameters after the scene's. ``parameters``: of each of the scene's, its
-        value, range and limits, and what is said of a value beyond its range. ``noise``: standard deviations of the inputs
-        that are noise; ``seed``. ``faults``: what may be not finite, in the order of the fault's numbers, and why.
+        value, range and limits, and what is said of a value beyond its range. ``picture`` and ``touching``: the moving
+        picture and the contact, recorded. ``noise``: standard deviations of the inputs that are noise; ``seed``. ``faults``:
+        what may be not finite, in the order of the fault's numbers, and why.
     """
     program, paddle = stage.source.program, stage.source.paddle
     paddles = {"held": paddle, "free": replace(paddle, hand=None)}
@@ -44,11 +46,12 @@ def page_data(stage):
         "start": stage.source.place,
         "seed": paddle.seed,
         "force_max": paddle.force_max,
-        "full": stage.picture.full,
         "watched": list(stage.motion.watched),
         "programs": {name: _module(link(program, one)) for name, one in paddles.items()},
         "plant": {name: list(one.plant_values()) for name, one in paddles.items()},
         "parameters": parameters_told(program),
+        "picture": stage.picture.recording(),
+        "touching": recorded_touching(stage.scene, stage.scene.watch),
         "noise": {"noise": paddle.noise, "hand.push_noise": paddle.hand.push_noise},
         "faults": {"names": culprits(program), "cause": likely_cause(program)},
     }

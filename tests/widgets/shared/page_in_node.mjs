@@ -1,10 +1,10 @@
 // The scripts of a shared page, without a page: cases from stdin, {scripts, cases: [[what, given], ...]}, answers to stdout.
 import { readFileSync } from "node:fs"
 
-const PARTS = ["Program", "Stepping", "Pace", "Rows", "PageSource", "refusal", "general", "chatterWords", "contactWords", "lateWords", "linspace", "normal"]
+const PARTS = ["Program", "Stepping", "Pace", "Rows", "PageSource", "touchingOf", "refusal", "general", "chatterWords", "contactWords", "lateWords", "linspace", "normal"]
 const { scripts, cases } = JSON.parse(readFileSync(0, "utf8"))
 const source = scripts.map((path) => readFileSync(path, "utf8")).join("\n")
-const { Program, Stepping, Pace, Rows, PageSource, ...parts } = new Function(`"use strict"; ${source}\n return { ${PARTS} }`)()
+const { Program, Stepping, Pace, Rows, PageSource, touchingOf, ...parts } = new Function(`"use strict"; ${source}\n return { ${PARTS} }`)()
 
 const text = (numbers) => Buffer.from(Float64Array.from(numbers).buffer).toString("base64")
 const numbers = (array) => [...new Float64Array(Uint8Array.from(Buffer.from(array, "base64")).buffer)]
@@ -66,8 +66,8 @@ const ANSWERS = {
     const receive = (news, bytes) => seen.push({ ...news, bytes: text(new Float64Array(bytes.slice(0, 24))), rows: Buffer.from(bytes.slice(24)).toString("base64") })
     const saved = []
     const source = new PageSource(told, await programsOf(told), {
-      picture: { at: () => ({ shape: [], points: [] }) },
-      touching: ({ x, F }, { x_o }) => x.map((place, k) => (place >= x_o && F[k] !== 0 ? 1 : 0)),
+      picture: { at: () => [[], []] },
+      touching: touchingOf(told.touching),
       save: (record) => (saved.push({ ...record, columns: texts(record.columns) }), "Saved"),
       clock: () => now,
     })

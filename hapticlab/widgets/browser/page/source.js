@@ -8,7 +8,7 @@ const PAST = 5e-3 // [m] past where a hand goes: there a handle that was let go 
 const CAUGHT = "The handle that was let go came to the end of its way: the hand holds it there"
 
 class PageSource {
-  // told: the data of the page; programs: {held, free}; picture.at(values): {shape, points}; touching: as Motion takes it;
+  // told: the data of the page; programs: {held, free}; picture.at(values): [shape, points]; touching: as Motion takes it;
   // save(record): keeps a record as a file, and returns words on it
   constructor(told, programs, { picture, touching, save, clock = () => performance.now() / 1000 }) {
     Object.assign(this, { told, about: told.about, picture, keep: save, clock, waiting: "" })
@@ -207,7 +207,7 @@ class PageSource {
       const note = now < this.noteUntil ? this.note : ""
       this.status = statusWords(this.motion, now, { vibration: this.vibration, lost: this.lost, note })
     }
-    const { shape, points } = this.picture.at(this.motion.drawn(this.wanted))
+    const [shape, points] = this.picture.at(this.motion.drawn(this.wanted))
     const width = this.about.columns.length
     const bytes = frameBytes(now, this.motion.time, rows ?? new Float32Array(0), width, points)
     this.inStep = true

@@ -7,8 +7,7 @@ async function openShared(told) {
   if (typeof WebAssembly === "undefined") throw new Error(NO_WEBASSEMBLY)
   const loops = Object.entries(told.programs)
   const programs = await Promise.all(loops.map(([, each]) => Program.open(each)))
-  const picture = new PlainPicture(told.about, told.full)
-  const touching = (samples) => new Float64Array(samples.x.length).fill(NaN)
+  const [picture, touching] = [new Drawing(told.picture), touchingOf(told.touching)]
   const save = (log) => keepRecord(log, told)
   return new PageSource(told, Object.fromEntries(loops.map(([name], k) => [name, programs[k]])), { picture, touching, save })
 }
