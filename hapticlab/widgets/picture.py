@@ -34,7 +34,8 @@ def moving_picture(scene, paddle=None, picture=None):
     picture : str, sequence of Placed, or callable, optional
         Instead: a name in ``hl.library``; shapes in their places, as ``hl.shapes.Circle("5 mm").at(y=z)``, drawn beside the
         handle; or a function ``draw(axes, *, x, ...)`` of its own, which takes what it names of coordinates and
-        parameters, and draws with :class:`~hapticlab.library.sketch.Sketch`.
+        parameters, and draws with :class:`~hapticlab.library.sketch.Sketch`. A shared file needs it to use functions of
+        NumPy on what moves, ``np.cos`` and not ``math.cos``, and ``np.where`` where an ``if`` would go many ways.
 
     Returns
     -------
