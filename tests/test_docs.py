@@ -91,7 +91,8 @@ def test_boards_run(capsys):
 @pytest.mark.parametrize(
     "path", [path for path in PAGES_THAT_RUN if path not in ("README.md", "docs/scenes.md", "docs/boards.md", LONG)]
 )
-def test_pages_run(path, capsys):
+def test_pages_run(path, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # a page may write files
     run_page(path)
     assert capsys.readouterr().out
 
