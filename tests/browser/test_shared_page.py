@@ -69,7 +69,8 @@ def test_what_a_visitor_changes_stands_in_the_address_and_in_the_code(opened):
     assert page.get_by_role("button", name="Slow").get_attribute("aria-pressed") == "true"
     expect(page.locator("#hl-code")).to_contain_text("scene = scene(k=150)")
     type_in(page, "x_o", "12")
-    comes_to(page, "#k=150N/m;x_o=12mm;slow-motion")
+    page.get_by_role("button", name="E drawn").click()
+    comes_to(page, "#k=150N/m;x_o=12mm;slow-motion;traces=x,F")
     names = {}
     exec(page.evaluate(CODE).replace("hl.share(scene, paddle)", ""), names)
     assert names["scene"] == hl.wall()(k=150, x_o=0.012) and names["paddle"].T == PADDLE.T
@@ -108,7 +109,7 @@ def test_a_tick_at_a_time_while_paused_and_not_while_a_number_is_typed(opened):
     field(page, "k").press("x")
     comes_to(page, "#k=310N/m")
     page.get_by_text("Help", exact=True).click()
-    assert "N next tick, C csv, X reset all" in page.locator(".hl-help").inner_text()
+    assert "N next tick, C save as CSV, X reset all" in page.locator(".hl-help").inner_text()
 
 
 def test_a_recording_is_a_file_that_python_reads(opened, tmp_path):

@@ -16,7 +16,7 @@ OWN = SCENE(k=300, x_o=0.01, B=0.5, m=0.02, a=0.1, ratio=0.7, tau=1e-3, g=9.81)
 VALUES = dict(OWN.values)
 PARAMETERS = [{"name": name, "unit": one.unit, "value": VALUES[name]} for name, one in OWN.parameters.items()]
 PARSER = parser()
-TOLD = {"parameters": PARAMETERS, "units": units(), "flags": ["slow-motion"]}
+TOLD = {"parameters": PARAMETERS, "units": units(), "flags": ["slow-motion"], "traces": ["x", "F", "E"]}
 ADDRESS = ["page/address.js"]
 
 #: as they may stand after --set
@@ -95,6 +95,14 @@ def test_an_address_is_short_and_readable():
     states = [[{"k": 150.0, "x_o": 0.0123}, []], [{"k": 300.0}, ["slow-motion"]], [long, []], [{}, []]]
     texts = in_node(ADDRESS, "all.map(([values, on]) => writeAddress(values, on, told))", told=TOLD, all=states)
     assert texts == ["#k=150N/m;x_o=12.3mm", "#slow-motion", "#B=0.30000000000000004N*s/m;ratio=0.5", ""]
+
+
+def test_traces_are_named_in_the_address():
+    write = "readAddress(writeAddress({}, ['slow-motion'], told, ['x', 'E']), told)"
+    found = in_node(ADDRESS, write, told=TOLD)
+    assert (found["flags"], found["traces"], found["problems"]) == (["slow-motion"], ["x", "E"], [])
+    (found,) = read(["traces=F,q"])
+    assert found["traces"] == ["F"] and found["problems"] == ["traces = 'q': there is no such trace; there are x, F, E"]
 
 
 def test_a_hostile_address_sets_nothing_and_is_told_in_few_words():

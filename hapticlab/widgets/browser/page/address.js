@@ -1,4 +1,5 @@
-// What a visitor changed, in the address of the page: #k=150N/m;x_o=10mm;slow-motion, in the words of `hapticlab run --set`.
+// What a visitor changed, in the address of the page: #k=150N/m;x_o=10mm;slow-motion;traces=x,F, values in the words of
+// `hapticlab run --set`.
 // A link may come from anybody: names are looked up in lists, never as keys, and nothing of it is read as HTML or script.
 
 const LONGEST_ADDRESS = 4000 // letters
@@ -8,10 +9,11 @@ const UNIT_FACTOR = /^([A-Za-z\u00b5\u03bc]+|1)(?:\^(-?\d+(?:\.\d+)?))?$/
 const NO_NUMBER = /^\s*([-+]?)(nan|inf|infinity)\s*$/i
 const ANGLES = { rad: 1, deg: Math.PI / 180 }
 
-// Return {values, flags, problems} of an address: numbers in SI by name, the flags that it names, and sentences on what is not
-// understood. parameters: {name, unit} each; units: as hapticlab/widgets/shared/units.py; flags: names without a value.
-function readAddress(hash, { parameters, units, flags }) {
-  const found = { values: Object.create(null), flags: [], problems: [] }
+// Return {values, flags, traces, problems} of an address: numbers in SI by name, the flags that it names, traces or null, and
+// sentences on what is not understood. parameters: {name, unit} each; units: as hapticlab/widgets/shared/units.py; flags: names
+// without a value; traces: those that there are.
+function readAddress(hash, { parameters, units, flags, traces }) {
+  const found = { values: Object.create(null), flags: [], traces: null, problems: [] }
   const text = decoded(hash.replace(/^#/, ""))
   if (text.length > LONGEST_ADDRESS) {
     found.problems.push(`The address has ${text.length} letters, and this page reads ${LONGEST_ADDRESS}: it shows its own values.`)
@@ -25,7 +27,12 @@ function readAddress(hash, { parameters, units, flags }) {
     if (!part.trim()) continue
     if (equals < 0 && flags.includes(name)) found.flags.push(name)
     else if (equals < 1 || !written) found.problems.push(`${quoted(part)} sets nothing; write NAME=VALUE, such as k=300 or x_o=10mm`)
-    else if (!parameter) found.problems.push(unknownName(name, written, parameters))
+    else if (!parameter && name === "traces") {
+      const names = written.split(",").map((each) => each.trim())
+      found.traces = traces.filter((each) => names.includes(each))
+      const unknown = names.find((each) => !traces.includes(each))
+      if (unknown !== undefined) found.problems.push(`traces = ${quoted(unknown)}: there is no such trace; there are ${traces.join(", ")}`)
+    } else if (!parameter) found.problems.push(unknownName(name, written, parameters))
     else {
       const [value, problem] = quantityOf(written, parameter, units)
       if (problem) found.problems.push(problem)
@@ -36,10 +43,12 @@ function readAddress(hash, { parameters, units, flags }) {
 }
 
 // Return the shortest address, with its #, that restores what differs from the page's own values; "" where nothing does.
-function writeAddress(values, on, { parameters, units }) {
+// on: the flags; traces: those shown, where they are not the page's own.
+function writeAddress(values, on, { parameters, units }, traces = null) {
   const changed = parameters.filter(({ name, value }) => name in values && values[name] !== value)
   const parts = changed.map((parameter) => `${parameter.name}=${quantityText(values[parameter.name], parameter, units)}`)
-  return parts.length + on.length ? `#${[...parts, ...on].join(";")}` : ""
+  const all = [...parts, ...on, ...(traces ? [`traces=${traces.join(",")}`] : [])]
+  return all.length ? `#${all.join(";")}` : ""
 }
 
 function decoded(text) {

@@ -3,20 +3,29 @@
 
 const SLOW_MOTION = "slow-motion"
 const WRITTEN_AFTER = 200 // [ms] after a change: a slider that is dragged writes once
+const MOST_TRACES = 4 // more would be too low to read
 const PAGE_BUTTONS = {
   step: { key: "N", word: "Next tick", title: "pause, and advance by one sampling period" },
   table: { key: "C", word: "CSV", title: "save the recording as a table" },
   reset: { key: "X", word: "Reset all", title: "values, motion and address as in the file" },
 }
+const PAGE_KEYS = "Of this page: N next tick, C save as CSV, X reset all. Keys act while the view has the focus."
 
 class Page {
   // source: of the view; told: the data of the page
   constructor(source, view, told) {
     Object.assign(this, { source, view, told })
-    this.words = { parameters: told.parameters, units: told.metric, flags: [SLOW_MOTION] }
+    const { traces } = told.about
+    this.words = { parameters: told.parameters, units: told.metric, flags: [SLOW_MOTION], traces: traces.map((each) => each.name) }
+    this.own = traces.filter((each) => each.open).map((each) => each.name)
     this.said = document.getElementById("hl-told")
     this.code = document.getElementById("hl-code")
     source.changed = () => this.changed()
+    const show = view.numbers.chosen
+    view.numbers.chosen = (open) => {
+      show(open)
+      this.changed()
+    }
     this.buildButtons()
     this.buildCopy()
     this.readAddress()
@@ -28,7 +37,7 @@ class Page {
 
   // Set what the address names, and nothing else; say what cannot be set.
   readAddress() {
-    const { values, flags, problems } = readAddress(location.hash, this.words)
+    const { values, flags, traces, problems } = readAddress(location.hash, this.words)
     const own = Object.fromEntries(this.told.parameters.map(({ name, value }) => [name, value]))
     for (const parameter of this.told.parameters) {
       const { name } = parameter
@@ -38,7 +47,15 @@ class Page {
     }
     const refused = this.source.set(own)
     if (flags.includes(SLOW_MOTION) !== this.isSlow) this.source.press("slow")
+    this.showTraces(traces?.length ? traces.slice(0, MOST_TRACES) : this.own)
     this.tell(refused ? [...problems, refused] : problems)
+  }
+
+  showTraces(names) {
+    const { numbers } = this.view
+    numbers.open = [...names]
+    numbers.mark()
+    numbers.chosen(numbers.open)
   }
 
   get isSlow() {
@@ -57,7 +74,9 @@ class Page {
 
   write() {
     const values = this.source.values
-    const address = writeAddress(values, this.isSlow ? [SLOW_MOTION] : [], this.words)
+    const { open } = this.view.numbers
+    const others = [...open].sort().join() !== [...this.own].sort().join() && open.length > 0
+    const address = writeAddress(values, this.isSlow ? [SLOW_MOTION] : [], this.words, others ? open : null)
     if (this.code) this.code.textContent = codeWith(values, this.told)
     try {
       if (address !== location.hash) history.replaceState(null, "", location.href.split("#")[0] + address)
@@ -76,8 +95,7 @@ class Page {
       this.buttons[name].addEventListener("click", () => this.press(name))
     }
     this.view.controls.row.append(...Object.values(this.buttons))
-    const keys = Object.entries(PAGE_BUTTONS).map(([, { key, word }]) => `${key} ${word.toLowerCase()}`).join(", ")
-    this.view.root.querySelector(".hl-help").append(make("p", {}, [`Of this page: ${keys}. Keys act while the view has the focus.`]))
+    this.view.root.querySelector(".hl-help").append(make("p", {}, [PAGE_KEYS]))
     this.view.root.addEventListener("keydown", (event) => this.key(event))
     this.showButtons()
   }
@@ -114,6 +132,7 @@ class Page {
   reset() {
     if (this.view.traces.zoomed) this.view.zoom()
     this.source.reset()
+    this.showTraces(this.own)
     this.tell([])
     this.write()
   }
