@@ -51,8 +51,10 @@ def pytest_collection():
 
 
 @pytest.hookimpl(tryfirst=True)  # before -m chooses
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     asked, met = set(), set()
+    if hasattr(config, "workerinput"):  # one process of several: a long file that begins last is waited for by all others
+        items.sort(key=lambda item: item.get_closest_marker("long") is None)
     for item in items:
         always = item.get_closest_marker("always")
         cases = {(item.function, case) for case in always.args} if always else set()

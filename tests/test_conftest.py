@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -81,6 +82,17 @@ def test_both_are_failures_in_ci_where_other_processes_run_the_tests(tmp_path):
     assert done.returncode != 0
     assert "1 failed, 1 passed, 1 error" in done.stdout, done.stdout
     assert "could not import" in done.stdout and "needs llvmlite" in done.stdout
+
+
+@pytest.mark.wide
+@pytest.mark.skipif(not importlib.util.find_spec("xdist"), reason="needs pytest-xdist")
+def test_several_processes_begin_with_what_is_long(tmp_path):
+    for name in "abc":
+        (tmp_path / f"test_{name}.py").write_text("def test_runs(): pass\ndef test_too(): pass\n")
+    (tmp_path / "test_d.py").write_text("import pytest\n@pytest.mark.long\ndef test_runs(): pass\n")
+    done = run(tmp_path, {}, "-vv", "-p", "xdist", "-n", "1", "--dist", "loadfile", "--no-loadscope-reorder")
+    ran = re.findall(r"PASSED .*test_(\w)\.py::", done.stdout)
+    assert ran == [*"daabbcc"], done.stdout
 
 
 def test_a_loop_that_a_module_leaves_running_is_an_error(tmp_path):

@@ -25,6 +25,7 @@ def test_the_page_shows_what_its_code_prints(name):
 
 @every_page
 @pytest.mark.wide
+@pytest.mark.long
 def test_the_figure_is_that_of_its_page(name, tmp_path):
     """Of this size, and the same to the eye: fonts differ by a pixel between releases of matplotlib."""
     path, drawn = script.PAGES[name], tmp_path / "drawn.png"

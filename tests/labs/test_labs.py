@@ -62,6 +62,7 @@ def test_lab_is_well_formed(folder):
 
 
 @pytest.mark.always("01_*")
+@pytest.mark.long
 def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, record_property):
     nbclient = pytest.importorskip("nbclient")
     nbformat = pytest.importorskip("nbformat")

@@ -86,6 +86,7 @@ def test_the_package_says_that_it_is_typed():
 
 
 @pytest.mark.wide
+@pytest.mark.long
 def test_a_type_checker_passes():
     """The package, students' code, and wrong calls: warn_unused_ignores fails where one of these is no longer refused."""
     done = subprocess.run([sys.executable, "-m", "mypy"], cwd=PACKAGE.parent, capture_output=True, text=True)
