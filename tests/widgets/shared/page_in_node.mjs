@@ -18,17 +18,21 @@ async function programsOf(told) {
 }
 
 const ANSWERS = {
-  // A scene, and what is done to it in turn: {intent}, {set}, {hold}, {start}.
+  // A scene, and what is done to it in turn: {intent}, {set}, {hold}, {start}; the fault is that before the last start.
   async steps({ told, plan }) {
     const stepping = new Stepping(told, await programsOf(told))
     const found = []
+    let fault = null
     for (const { intent, set, hold, start } of plan) {
       if (set) stepping.set(set)
       if (hold !== undefined) stepping.hold(hold)
-      if (start) stepping.start()
+      if (start) {
+        fault = stepping.fault
+        stepping.start()
+      }
       if (intent) found.push(texts(stepping.advance(Float64Array.from(numbers(intent)))))
     }
-    return { found, fault: stepping.fault, place: stepping.place }
+    return { found, fault, place: stepping.place }
   },
 
   pace({ T, speed, moments, costs, speeds }) {
