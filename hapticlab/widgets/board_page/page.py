@@ -4,7 +4,7 @@ from ..shared.document import VIEW_SCRIPTS, document
 from .programs import page_data
 
 BOARD_SCRIPTS = (
-    "page/rows.js", "page/limits.js", "page/records.js", "page/status.js", "page/npz.js", "page/plain_picture.js",
+    "page/rows.js", "page/limits.js", "page/records.js", "page/status.js", "page/drawing.js", "page/npz.js", "page/files.js",
     "board/messages.js", "board/link.js", "board/port.js", "board/paddle.js", "board/source.js", "board/page.js",
     "board/start.js",
 )  # fmt: skip

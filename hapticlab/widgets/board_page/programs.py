@@ -4,6 +4,7 @@ import base64
 import time
 from dataclasses import dataclass, field
 
+from ...analysis.pictures.touching import recorded_touching
 from ...compiler.boards.board_records import BOARDS
 from ...compiler.boards.cost import cost
 from ...compiler.engines.bytecode import encode
@@ -88,8 +89,8 @@ def page_data(boards=("uno", "pico"), chosen=None):
 def scene_data(choice, boards):
     """Return a scene with its program for each board that carries it, or None where none does."""
     found = {board: told for board in boards for told in [_on_board(choice, board)] if told}
-    where = " and ".join(found)
-    return found and {"name": choice.name, "title": choice.title, "about": f"{choice.title}. For: {where}.", "boards": found}
+    where = " and ".join(BOARDS[board].flashing.called if BOARDS[board].flashing else board for board in found)
+    return found and {"name": choice.name, "title": choice.title, "about": f"It fits {where}.", "boards": found}
 
 
 def _on_board(choice, board):
@@ -121,6 +122,7 @@ def _told(choice, board, *, T, **options):
         "watched": [c.name for c in program.outputs[1:]],
         "parameters": parameters_told(program),
         "about": {**shown, **apart, "help": shown["help"] + HELP},
-        "full": stage.picture.full,
+        "picture": stage.picture.recording(),
+        "touching": recorded_touching(stage.scene, stage.scene.watch),
         "record": {"units": program.units, "scene": program.name},
     }

@@ -6,8 +6,8 @@ from .document import VIEW_SCRIPTS, document
 
 PAGE_SCRIPTS = (
     "page/program.js", "page/stepping.js", "page/pace.js", "page/rows.js", "page/limits.js", "page/records.js", "page/motion.js",
-    "page/status.js", "page/source.js", "page/drawing.js", "page/address.js", "page/npz.js", "page/page.js",
-    "page/start.js",
+    "page/status.js", "page/source.js", "page/drawing.js", "page/address.js", "page/npz.js", "page/files.js",
+    "page/page.js", "page/start.js",
 )  # fmt: skip
 STYLES = ("view.css", "page/page.css")
 #: what stands where the view will be, until it runs

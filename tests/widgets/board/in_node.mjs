@@ -5,10 +5,10 @@ import { readFileSync } from "node:fs"
 const here = new URL("../../../", import.meta.url)
 const text = (path) => readFileSync(new URL(path, here), "utf-8")
 const browser = "hapticlab/widgets/browser/"
-const scripts = ["page/rows.js", "page/limits.js", "page/records.js", "page/status.js", "page/npz.js", "page/plain_picture.js"]
+const scripts = ["page/rows.js", "page/limits.js", "page/records.js", "page/status.js", "page/npz.js", "page/drawing.js"]
   .concat(["messages", "link", "port", "paddle", "source", "core"].map((name) => `board/${name}.js`))
 const source = [...scripts.map((name) => text(browser + name)), text("tests/widgets/board/fake_serial.js")].join("\n")
-const names = "TABLES, Board, BoardPort, PagePaddle, BoardSource, PlainPicture, FakeBoard, FakePort, FakeSerial, Decoder, decodeFrame, fieldsOf, encodeFrame, recordFile"
+const names = "TABLES, Board, BoardPort, PagePaddle, BoardSource, Drawing, touchingOf, FakeBoard, FakePort, FakeSerial, Decoder, decodeFrame, fieldsOf, encodeFrame, recordFile"
 const asked = JSON.parse(readFileSync(0, "utf-8"))
 const wasm = readFileSync(new URL("firmware/prebuilt/web.wasm", here))
 const settle = () => new Promise(setImmediate)
@@ -58,7 +58,7 @@ async function bench({ store = asked.stores.usual, scene = "wall" } = {}) {
     }))
     if (opened?.problem) return opened.problem.message
     const told = asked.data.scenes.find(({ name }) => name === scene).boards.host
-    const options = { picture: new page.PlainPicture(told.about, told.full), touching: (s) => s.x.map(() => NaN), save: () => "kept", clock }
+    const options = { picture: new page.Drawing(told.picture), touching: page.touchingOf(told.touching), save: () => "kept", clock }
     b.source = new page.BoardSource(told, asked.data.words, b.paddle, { ...options, gesture: () => b.pressed() })
     b.source.open(b.view)
     b.source.show(true)
@@ -134,7 +134,7 @@ const scenarios = {
     await b.pass(0.3)
     const after = { duty: b.board.core.duty, x: b.board.x }
     await b.press("stop")
-    const record = b.page.recordFile(b.source.recorded(), { ...told.record, paddle: "board", delay: 0, sensor_delay: 0, force_max: b.paddle.forceMax })
+    const record = b.page.recordFile(b.source.recorded(), { ...told.record, ...b.paddle.record })
     const off = await b.after(() => b.press("pause", 0))
     await b.pass(0.3)
     return { forces, before, after, off, status: b.status(), facts: b.paddle.facts, options: b.port.options, signals: b.port.signals, asked: b.serial.asked, gotten: b.serial.gotten, said: [...new Set(b.said())], frames: b.frames.length, record: Buffer.from(record).toString("base64") }

@@ -99,6 +99,12 @@ class PagePaddle {
     ]
   }
 
+  // What a record keeps of the board: its name, the time of a step [s], the age of a reading [s], the largest force [N].
+  get record() {
+    const { board, settings, delay = 0 } = this
+    return { paddle: `${board.name} ${hex4(board.ident)}`, delay, sensor_delay: settings.sensor_delay, force_max: this.forceMax }
+  }
+
   // Why the motor of this board stays off, in words; "" where it may be driven.
   get obstacle() {
     const { settings } = this
@@ -198,6 +204,7 @@ class PagePaddle {
     this.giveUp()
     await this.exchange.command("STOP", [], { tries: 4 })
     const state = await this.exchange.refresh()
+    this.delay = state.step_mean / this.board.clock_hz
     if (state.state !== TABLES.states.FAULT) return ""
     await this.exchange.command("CLEAR")
     return faultWords(run?.fault ?? state, this.exchange.absent, run?.told.T)

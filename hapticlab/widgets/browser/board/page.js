@@ -6,7 +6,7 @@ const HIDDEN_WORDS = "The page was hidden, so the motor was switched off. Press 
 class PaddlePage {
   // data: of the page; element(id): what the page consists of
   constructor(data, element, clock = PAGE_CLOCK) {
-    Object.assign(this, { data, element, clock, paddle: null, source: null, view: null, pressedAt: -Infinity })
+    Object.assign(this, { data, element, clock, paddle: null, source: null, view: null })
     for (const { name, title } of data.scenes) element("scene").append(new Option(title, name))
     element("scene").addEventListener("change", () => this.choose())
     element("connect").addEventListener("click", () => (this.paddle ? this.disconnect() : this.connect()))
@@ -18,10 +18,6 @@ class PaddlePage {
   // --- what a person presses, and what switches the motor off
 
   listen() {
-    const pressed = (event) => {
-      if (event.isTrusted) this.pressedAt = event.timeStamp / 1000 // one that waited keeps the time of the hand
-    }
-    for (const kind of ["pointerdown", "click", "keydown"]) window.addEventListener(kind, pressed, true)
     window.addEventListener("keydown", (event) => this.stopByKey(event), true)
     document.addEventListener("visibilitychange", () => document.hidden && this.stop(HIDDEN_WORDS))
     document.addEventListener("freeze", () => this.stop(HIDDEN_WORDS))
@@ -66,6 +62,7 @@ class PaddlePage {
   // --- the board
 
   async connect() {
+    if (this.clock.now() - pressedAt() > TIMELY) return this.say("Press Connect yourself: a script opens no port.")
     const button = this.element("connect")
     button.disabled = true
     this.say("Choose the port of the board.")
@@ -80,6 +77,7 @@ class PaddlePage {
       this.say(problem.message)
     }
     button.disabled = false
+    return undefined
   }
 
   // Say what the board is, and what must be done on a computer first.
@@ -127,10 +125,10 @@ class PaddlePage {
     if (this.paddle.obstacle) return
     if (!told) return this.say(`This scene does not fit the board ${this.paddle.board.name}. Choose another one.`)
     this.source = new BoardSource(told, this.data.words, this.paddle, {
-      picture: new PlainPicture(told.about, told.full),
-      touching: (samples) => new Float64Array(samples.x.length).fill(NaN),
-      save: (log) => keepRecord(log, told.record),
-      gesture: () => this.pressedAt,
+      picture: new Drawing(told.picture),
+      touching: touchingOf(told.touching),
+      save: (log) => keepRecord(log, { ...told.record, ...this.paddle.record }),
+      gesture: pressedAt,
       clock: this.clock,
     })
     this.view = new View(this.source, this.element("view"))
@@ -148,11 +146,8 @@ class PaddlePage {
   }
 }
 
-// Keep a record as a file that hapticlab reads; return words on it.
-function keepRecord(log, told) {
-  const name = `${told.scene.replace(/[^\p{L}\p{N}]+/gu, "_")}.npz`
-  const link = make("a", { href: URL.createObjectURL(new Blob([recordFile(log, told)])), download: name })
-  link.click()
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000)
-  return `Saved ${name}: hl.records.Telemetry.load reads it`
+// When the person pressed what is being handled now [s]; what a script pressed was never pressed. A press that waited keeps its time.
+function pressedAt() {
+  const { event } = window
+  return event?.isTrusted && ["click", "keydown"].includes(event.type) ? event.timeStamp / 1000 : -Infinity
 }

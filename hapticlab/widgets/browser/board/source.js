@@ -7,8 +7,9 @@ const RESTS = 0.25 // [s] between two pictures, and two looks at the board, whil
 const SAID = 6.0 // [s] that a note stays
 
 class BoardSource {
-  // told: of data.programs; words: of data.words; picture.at(values): {shape, points}; touching(samples, values): contact of each
-  // sample; save(record): keeps a record as a file, returns words on it; gesture(): when a person last pressed something [s]
+  // told: of data.programs; words: of data.words; picture.at(values): [shape, points]; touching(samples, values): contact of each
+  // sample; save(record): keeps a record as a file, returns words on it; gesture(): when a person pressed what is
+  // being handled now [s]
   constructor(told, words, paddle, { picture, touching, save, gesture, clock = PAGE_CLOCK }) {
     Object.assign(this, { told, about: told.about, words, paddle, picture, touching, keep: save, gesture, clock })
     this.numbers = told.parameters.map((parameter) => parameter.value)
@@ -73,7 +74,7 @@ class BoardSource {
 
   begin() {
     this.rows = this.freshRows(this.period)
-    Object.assign(this, { running: true, fault: "", homed: true, noticed: {}, last: { x: this.last.x, F: 0 } })
+    Object.assign(this, { running: true, fault: "", note: "", homed: true, noticed: {}, last: { x: this.last.x, F: 0 } })
     if (this.recorder) this.record() // one that waited begins
   }
 
@@ -233,7 +234,7 @@ class BoardSource {
   send(rows, now) {
     this.nextFrame = now + RESTS
     const values = this.player ? this.player.parameters : this.values
-    const { shape, points } = this.picture.at({ T: this.told.T, ...values, ...this.last })
+    const [shape, points] = this.picture.at({ T: this.told.T, ...values, ...this.last })
     const bytes = frameBytes(now, this.last.t ?? 0, rows ?? new Float32Array(0), this.about.columns.length, points)
     this.view.receive({ shape, ...this.news(now) }, bytes)
   }

@@ -182,17 +182,6 @@ class Motion {
   }
 }
 
-// A function of samples and parameters: the contact of each sample, 1 or 0; NaN where the scene has nothing to touch.
-function touchingOf(recording) {
-  if (!recording) return ({ x }) => new Float64Array(x.length).fill(NaN)
-  const touched = new Recorded(recording)
-  const names = recording.inputs.map(([name]) => name)
-  return (samples, values) => Float64Array.from(samples.x, (_, k) => {
-    const known = names.map((name) => [name, Object.hasOwn(samples, name) ? samples[name][k] : values[name]])
-    return touched.at(Object.fromEntries(known))
-  })
-}
-
 // Places from one to another, evenly apart, as NumPy makes them.
 function linspace(from, to, count) {
   const step = (to - from) / (count - 1)

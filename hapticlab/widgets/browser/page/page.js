@@ -166,23 +166,3 @@ async function copied(element) {
     return "Selected. Copy it with Ctrl+C, or Cmd+C on a Mac."
   }
 }
-
-// Keep a record as files of the browser; return words on them.
-function keepRecord(log, told) {
-  const name = keepFile(recordFile(log, told), told.scene, "npz", "application/zip")
-  return `Saved ${name}, see your downloads: hl.records.Telemetry.load reads it`
-}
-
-function keepTable(log, told) {
-  return `Saved ${keepFile(new TextEncoder().encode(recordTable(log, told)), told.scene, "csv", "text/csv")}, see your downloads`
-}
-
-function keepFile(bytes, scene, ending, type) {
-  const stem = scene.replace(/[^\p{L}\p{N}]+/gu, "_").replace(/^_+|_+$/g, "") || "scene"
-  keepFile.count = (keepFile.count ?? 0) + 1
-  const name = `${stem}-${keepFile.count}.${ending}`
-  const address = URL.createObjectURL(new Blob([bytes], { type }))
-  make("a", { href: address, download: name }).click()
-  setTimeout(() => URL.revokeObjectURL(address), 60_000)
-  return name
-}

@@ -1,0 +1,246 @@
+"""The page of a real paddle in a Chromium: a fake port with the firmware's core behind it, and a person's presses.
+
+The board ticks in the page around the paddle's, by the clock; how long a motor was on is counted in the board's own ticks.
+"""
+
+import base64
+import json
+import os
+from pathlib import Path
+
+import pytest
+from core_in_node import WEB
+from page_bench import SILENT, request
+
+from hapticlab.device.link.messages import HOST_SILENCE_MS
+from hapticlab.widgets.board_page.page import paddle_page
+from hapticlab.widgets.browser_view import BROWSER
+
+HERE = "https://paddle.test"
+FAKE = BROWSER.parents[2] / "tests" / "widgets" / "board" / "fake_serial.js"
+#: what plugs the board in: its store, its ticks by the clock, and the frame in which the paddle's page is
+AROUND = """async ([wasm, store, known]) => {
+  const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))
+  const cores = await Promise.all([0, 1].map(() => Board.open(bytes(wasm), bytes(store))))
+  const begun = performance.now()
+  const now = () => (performance.now() - begun) / 1000
+  window.board = new FakeBoard(cores, known)
+  window.port = new FakePort(board)
+  window.frame = document.querySelector("iframe")
+  window.serial = new FakeSerial(port, () => frame.contentWindow.navigator.userActivation.isActive)
+  window.ticks = () => { // as many as are due by now
+    board.run(now())
+    return board.ticks
+  }
+  port.beforeTake = ticks
+  board.run(0.002)
+  for (const [name, values] of [["HELLO", [9]], ["HOME", [0]]]) board.core.receive(encodeFrame(name, 1, values, { session: 9 }))
+  board.core.transmit()
+  setInterval(ticks, 1)
+  frame.src = "/paddle.html#start=1;k=900"
+}"""
+DOCUMENT, WINDOW = "frame.contentDocument", "frame.contentWindow"
+IN_FRAME = "if (parent !== window) Object.defineProperty(navigator, 'serial', { get: () => parent.serial })"
+
+
+@pytest.fixture(scope="module")
+def asked():
+    return request()
+
+
+@pytest.fixture(scope="module")
+def html(asked):
+    return paddle_page(asked["data"])
+
+
+class Bench:
+    """A board, and a person before the page that drives it."""
+
+    def __init__(self, browser, html, asked):
+        self.errors, self.requests = [], []
+        self.context = browser.new_context(viewport={"width": 900, "height": 900})
+        self.context.add_init_script(IN_FRAME)
+        self.context.on("request", lambda request: self.requests.append(request.url))
+        answers = {f"{HERE}/": "<!DOCTYPE html><iframe style='width: 860px; height: 860px'></iframe>", f"{HERE}/gone": ""}
+
+        def answer(route):
+            url = route.request.url.partition("#")[0]
+            route.fulfill(body=answers.get(url, html), content_type="text/html")
+
+        self.context.route("**/*", answer)
+        self.page = self.context.new_page()
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.goto(f"{HERE}/")
+        scripts = [BROWSER / name for name in ("page/npz.js", "board/messages.js", "board/link.js", "board/core.js")]
+        source = "\n".join(path.read_text("utf-8") for path in (*scripts, FAKE))
+        self.page.add_script_tag(content=source)
+        store = base64.b64encode(bytes.fromhex(asked["stores"]["usual"]).ljust(4096, b"\xff")).decode()
+        self.page.evaluate(AROUND, [base64.b64encode(WEB.read_bytes()).decode(), store, asked["known"]])
+        self.frame = self.page.frame_locator("iframe")
+        self.frame.locator("#hl-connect").wait_for()
+
+    @property
+    def inside(self):
+        return self.page.frames[1]
+
+    def words(self):
+        return self.frame.locator("#hl-words").inner_text()
+
+    def status(self):
+        return self.frame.locator(".hl-status").inner_text()
+
+    def button(self, name):
+        return self.frame.locator(f".hl-{name}")
+
+    def connect(self):
+        self.frame.locator("#hl-connect").click()
+        self.frame.locator(".hl-live").wait_for()
+        self.until("said().includes('Motor off')")
+
+    def until(self, condition, timeout=30_000):
+        """Wait in the page around until a condition holds; ``said()`` is what the view says."""
+        said = "const said = () => frame.contentDocument?.querySelector('.hl-status')?.textContent ?? ''"
+        self.page.wait_for_function(f"() => {{ {said}; return {condition} }}", timeout=timeout)
+
+    def start(self, hand=0.02):
+        """Take the handle into the wall, and press Start."""
+        self.page.evaluate("(hand) => { board.hand = hand }", hand)
+        self.until("Math.abs(board.v) < 0.01 && board.x > 0.015")
+        self.button("run").click()
+        self.until("board.core.duty !== 0 && said().startsWith('Motor on')")
+
+    def off_after(self, work, rest=250):
+        """Do something, a text for the page around or a call; return the board's time until its motor was off [s].
+
+        It counts from ``window.tick``, where what is done sets it, else from just before.
+        """
+        before = self.page.evaluate("() => (window.tick = ticks())")
+        if callable(work):
+            work(self)
+        else:
+            self.page.evaluate(f"async () => {{ window.tick = ticks(); {work} }}")
+        self.until(f"board.ticks > {before} + {rest}")
+        off = self.page.evaluate("board.offAfter(tick)")
+        assert off is not None, self.status()
+        return off
+
+    def close(self):
+        self.context.close()
+
+
+@pytest.fixture
+def bench(browser, html, asked):
+    bench = Bench(browser, html, asked)
+    yield bench
+    bench.close()
+
+
+def started(bench):
+    """The names of all requests that reached the board."""
+    return bench.page.evaluate("port.sent.flatMap((bytes) => new Decoder().feed(bytes)).map((frame) => frame.message)")
+
+
+@pytest.mark.wide
+def test_a_wall_is_felt_from_a_page_and_every_way_to_stop_stops_it(bench, tmp_path):
+    page, frame = bench.page, bench.frame
+    page.evaluate("frame.contentWindow.postMessage({ start: true, connect: true }, '*')")
+    page.evaluate("frame.contentDocument.querySelector('#hl-connect').click()")  # a script's press is not a person's
+    bench.until("frame.contentDocument.querySelector('#hl-words').textContent.includes('a script opens no port')")
+    assert page.evaluate("[serial.asked.length, serial.gotten, port.sent.length]") == [0, 0, 0]
+    bench.connect()
+    facts = frame.locator("#hl-facts").inner_text()
+    assert "host BEEF, firmware 2.0" in facts and "4 N" in facts and "2 m/s" in facts
+    page.evaluate("board.hand = 0.02")
+    page.evaluate("frame.contentDocument.querySelector('.hl-run').click()")
+    bench.until("said().includes('Start came late')")
+    assert "START" not in started(bench)
+
+    bench.start()
+    bench.until(
+        "board.core.duty < -0.1 && Math.abs(8 * board.core.duty + 300 * (board.x - 0.01)) < 0.03"
+    )  # Eq. (23.1); 8 N in full
+    assert frame.locator(".hl-entry").first.input_value() == "300"
+    entry = frame.locator(".hl-entry").first
+    entry.fill("150")
+    entry.press("Enter")
+    bench.until("Math.abs(8 * board.core.duty + 150 * (board.x - 0.01)) < 0.03")
+    page.screenshot(path=Path(os.environ.get("HAPTICLAB_ARTIFACTS", tmp_path), "paddle_page.png"))
+    heard = page.evaluate("port.sent.length")
+    bench.until(f"port.sent.length > {heard} + 8")  # heartbeats go on by themselves
+
+    # the board's tick at the press: nobody else hears of it first
+    page.evaluate(
+        f"['pointerdown', 'keydown'].map((kind) => {WINDOW}.addEventListener(kind, () => (window.tick = ticks()), true))"
+    )
+    stops = {
+        "button": lambda _: frame.locator("#hl-stop").click(), "Space": lambda _: page.keyboard.press(" "),
+        "Esc": lambda _: page.keyboard.press("Escape"), "P": lambda _: page.keyboard.press("p"),
+    }  # fmt: skip
+    for name, stop in stops.items():
+        bench.button("run").focus() if name == "P" else entry.focus()
+        off = bench.off_after(stop)
+        print(f"{name}: motor off {1e3 * off:.0f} ms after it was pressed")
+        assert off < 0.1  # a click ends when the finger is lifted
+        bench.until("said().startsWith('Motor off')")
+        bench.start()
+    assert bench.errors == [] and {url.partition("#")[0] for url in bench.requests} == {f"{HERE}/", f"{HERE}/paddle.html"}
+    assert "HOME" not in started(bench) and page.evaluate("serial.gotten") == 0
+
+
+HIDE = f"""Object.defineProperty({DOCUMENT}, 'hidden', {{ get: () => true }})
+  {DOCUMENT}.dispatchEvent(new Event('visibilitychange'))"""
+LEAVE = f"""const gone = new Promise((done) => frame.addEventListener('load', done, {{ once: true }}))
+  {WINDOW}.addEventListener('pagehide', () => {{ window.tick = ticks() }}, true)
+  frame.src = '/gone'
+  await gone"""
+CHOOSE = f"""const scene = {DOCUMENT}.querySelector('#hl-scene')
+  scene.selectedIndex = 1
+  scene.dispatchEvent(new Event('change'))"""
+THROW = "setTimeout(() => { parent.tick = parent.ticks(); throw new Error('a mistake') })"
+#: what happens to a page whose motor is on, in the page around or by a call; the longest time until it is off by the board's
+#: ticks [s]; and words of the page then, None where it is gone
+HAPPENS = {
+    "hidden": (HIDE, 0.005, "The page was hidden"),
+    "frozen": (f"{DOCUMENT}.dispatchEvent(new Event('freeze'))", 0.005, "The page was hidden"),
+    "left": (LEAVE, 0.005, None),
+    "blocked": ("for (const until = performance.now() + 300; performance.now() < until; ) {}", SILENT, "this page was stopped"),
+    "error": (lambda bench: bench.inside.evaluate(THROW), 0.005, "a mistake"),
+    "rejection": (f"{WINDOW}.Promise.reject(new Error('a mistake'))", 0.03, "a mistake"),
+    "unplugged": ("port.unplug()", SILENT, "disconnected during use"),
+    "scene chosen": (CHOOSE, 0.005, "Motor off"),
+    "handle thrown": ("board.v = 4", 0.003, "OVER_SPEED"),
+    "board reset": ("board.reset()", 0.002, "was reset"),
+}
+
+
+@pytest.mark.wide
+@pytest.mark.parametrize("name", HAPPENS)
+def test_the_motor_goes_off_with_the_page(bench, name, record_property):
+    work, within, words = HAPPENS[name]
+    bench.connect()
+    bench.start()
+    off = bench.off_after(work, 400 if name != "board reset" else 1600)
+    record_property("motor_off_after_s", off)
+    print(f"{name}: motor off {1e3 * off:.0f} ms after it, stated {1e3 * within:.0f} ms")
+    assert off <= within + 1e-9
+    if words:
+        bench.until(f"(said() + frame.contentDocument.querySelector('#hl-words').textContent).includes({json.dumps(words)})")
+    starts = started(bench).count("START")
+    bench.page.evaluate("board.hand = 0")
+    bench.until(f"board.ticks > {bench.page.evaluate('board.ticks')} + 300")
+    assert started(bench).count("START") == starts == 1  # nothing starts again by itself
+    assert HOST_SILENCE_MS == 100
+
+
+@pytest.mark.wide
+def test_a_port_that_is_taken_and_a_browser_without_ports_are_told(bench):
+    bench.page.evaluate("port.taken = true")
+    bench.frame.locator("#hl-connect").click()
+    bench.until("frame.contentDocument.querySelector('#hl-words').textContent.includes('Another tab or program')")
+    bench.page.evaluate("port.taken = false")
+    bench.connect()  # and then again
+    bench.frame.locator("#hl-connect").click()
+    bench.until("frame.contentDocument.querySelector('#hl-words').textContent === 'Disconnected.' && port.closed")
+    bench.page.evaluate("serial = undefined")
+    bench.inside.evaluate("location.reload()")
+    bench.until("frame.contentDocument?.querySelector('#hl-words')?.textContent.includes('Use Chrome or Edge')")
