@@ -3,6 +3,8 @@
 import re
 from dataclasses import fields, replace
 
+from ...device.hand.hand import Hand
+from ...device.hand.hand_presets import PRESETS
 from ...device.profiles import PROFILES
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from .scene_code import scene_code
@@ -68,8 +70,13 @@ def _changes(record, usual, *without):
 
 
 def _hand(hand):
-    """A hand; its own intent, which may be a function, gives way to the visitor's."""
-    return hand and f"hl.Hand({', '.join(_changes(replace(hand, intent=None), None))})"
+    """A hand, by its preset where it has the constants of one, without its intent: the visitor has one."""
+    if hand is None:
+        return "None"
+    hand = replace(hand, intent=None)
+    preset = next((name for name in PRESETS if not {"m", "b", "k"} & {change[0] for change in _changes(hand, Hand(name))}), None)
+    named = [f'"{preset}"'] if preset else []
+    return f"hl.Hand({', '.join([*named, *_changes(hand, Hand(preset))])})"
 
 
 def _is_plain(value):
