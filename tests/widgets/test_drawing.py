@@ -3,6 +3,7 @@
 import json
 import math
 import subprocess
+from functools import cache
 
 import core_in_node
 import numpy as np
@@ -96,11 +97,13 @@ def assert_same(found, wanted, size, name):
                 np.testing.assert_allclose(style[key], value, rtol=1e-9, atol=1e-9 * size, err_msg=f"{name}: {kind}'s {key}")
 
 
-def pictures(names):
-    own = own_scenes()
-    for name in names:
-        scene, picture = own[name] if name in own else (CATALOGUE[name].scene(), None)
-        yield name, scene, moving_picture(scene, picture=picture)
+@cache
+def case(name, count):
+    """Return a picture as data, some moments, and what it draws then."""
+    scene, picture = own_scenes().get(name) or (CATALOGUE[name].scene(), None)
+    picture = moving_picture(scene, picture=picture)
+    values = list(moments(scene, picture, count))
+    return picture.recording(), values, [picture.draw(one) for one in values]
 
 
 def in_node(asked):
@@ -118,34 +121,51 @@ def _word(value):
     return float(value) if math.isfinite(value) else {math.inf: "Infinity", -math.inf: "-Infinity"}.get(value, "NaN")
 
 
-def hold_to_what_they_draw(names, count):
-    """Compare the data with the picture: read by NumPy, and by a page's script where node is."""
-    asked, wanted = {}, {}
-    for name, scene, picture in pictures(names):
-        asked[name] = picture.recording(), list(moments(scene, picture, count))
-        wanted[name] = [picture.draw(values) for values in asked[name][1]]
-        for values, items in zip(asked[name][1], wanted[name], strict=True):
-            assert_same(items_of(asked[name][0], values), items, picture.box[1] - picture.box[0], name)
-    if core_in_node.missing():
-        return
-    answers = in_node(asked)
+def hold_data_to_pictures(names, count):
     for name in names:
-        for (shape, points), items in zip(answers[name], wanted[name], strict=True):
-            size, ends = items[-1][1][1][0] - items[-1][1][0][0], np.cumsum([0, *(number for _, number, _ in shape)])
-            places = np.reshape(points, (-1, 2))
+        data, values, drawn = case(name, count)
+        for one, items in zip(values, drawn, strict=True):
+            assert_same(items_of(data, one), items, width(items), name)
+
+
+def hold_page_to_pictures(names, count):
+    answers = in_node({name: case(name, count)[:2] for name in names})
+    for name in names:
+        for (shape, points), items in zip(answers[name], case(name, count)[2], strict=True):
+            ends, places = np.cumsum([0, *(number for _, number, _ in shape)]), np.reshape(points, (-1, 2))
             found = [(kind, places[at : at + number], style) for (kind, number, style), at in zip(shape, ends, strict=False)]
-            assert_same(found, items, size, name)
-            told, _ = take_apart(items)
-            assert [one[:2] for one in shape] == [one[:2] for one in told]
+            assert_same(found, items, width(items), name)
+            assert [one[:2] for one in shape] == [one[:2] for one in take_apart(items)[0]]
 
 
+def width(items):
+    (left, _), (right, _) = items[-1][1]
+    return right - left
+
+
+SOME = (*FEW, *own_scenes())
+
+
+def test_data_give_what_the_picture_draws():
+    hold_data_to_pictures(SOME, 10)
+    for name in ("four_bar", "rolling", "own drawing"):  # not the same items each time
+        assert len({len(items) for items in case(name, 10)[2]}) > 1, name
+
+
+@needs_node
 def test_a_page_draws_what_the_picture_draws():
-    hold_to_what_they_draw([*FEW, *own_scenes()], 10)
+    hold_page_to_pictures(SOME, 10)
 
 
 @pytest.mark.wide
-def test_a_page_draws_every_scene_of_the_library_as_its_picture_does():
-    hold_to_what_they_draw(list(CATALOGUE), 60)
+def test_data_give_what_each_picture_of_the_library_draws():
+    hold_data_to_pictures(CATALOGUE, 60)
+
+
+@needs_node
+@pytest.mark.wide
+def test_a_page_draws_what_each_picture_of_the_library_draws():
+    hold_page_to_pictures(CATALOGUE, 60)
 
 
 @needs_node
@@ -167,8 +187,8 @@ def test_functions_of_a_page_are_those_of_numpy():
 
 
 def test_a_recording_is_small_and_plain():
-    for name, _, picture in pictures(["virtual_fixture", "cart_pole"]):
-        assert len(json.dumps(picture.recording(), allow_nan=False, separators=(",", ":"))) < 12_000, name
+    for name in ("virtual_fixture", "cart_pole"):
+        assert len(json.dumps(case(name, 10)[0], allow_nan=False, separators=(",", ":"))) < 12_000, name
 
 
 def test_what_a_drawing_of_ones_own_may_not_use_is_named():
