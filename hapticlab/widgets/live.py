@@ -57,7 +57,8 @@ def live(
     the motor goes on only when Start is pressed. Nothing runs before a notebook shows the view; all ends when its last view
     closes or falls silent for 2 s. Where a notebook's widgets wait for the cell that runs (no subshells: ipykernel before 7,
     and editors other than JupyterLab), a cell longer than that is such a silence: a simulation then goes on after it, a
-    board waits for Start.
+    board waits for Start. Where a browser runs Python, a view and the cells take turns: a simulation stands still while a cell
+    computes, and goes on while one awaits, for up to 60 s.
 
     Parameters
     ----------

@@ -31,7 +31,8 @@ class Session:
 
     A front end calls ``connect(sink)`` once, sends ``description()`` to its views, and says ``ready(view)`` for every view
     that opened, ``alive(view)`` at least once a second from each, ``gone(view)`` when one closed; ``view`` is any text that
-    tells views apart. Nothing runs before the first ready; everything ends with the last view, or after 2 s of silence.
+    tells views apart. Nothing runs before the first ready; everything ends with the last view, or after 2 s of silence
+    (a simulation in a browser's Python: 60 s, because what a page says waits there for the cell that runs).
     Then the inputs: each stores what it is given and returns at once, from whatever thread. A front end may keep the
     session; it must not keep the LiveView, whose end closes the session.
 
