@@ -64,7 +64,8 @@ def comes_to(page, address):
 
 
 def test_what_a_visitor_changes_stands_in_the_address_and_in_the_code(opened):
-    page = opened(address="#k=150N/m;slow-motion")
+    page = opened(address="#k=150N/m;slow-motion", color_scheme="dark", viewport={"width": 390, "height": 900})
+    assert findings(page) == []
     assert field(page, "k").input_value() == "150"
     assert page.get_by_role("button", name="Slow").get_attribute("aria-pressed") == "true"
     expect(page.locator("#hl-code")).to_contain_text("scene = scene(k=150)")
@@ -83,6 +84,7 @@ def test_what_a_visitor_changes_stands_in_the_address_and_in_the_code(opened):
     expect(field(page, "k")).to_have_value("400")
 
 
+@pytest.mark.wide
 def test_what_an_address_cannot_set_is_told_in_the_words_of_python(opened):
     page = opened(address="#k=-5;x_o=12mm;q=3;__proto__=1;B=1e999;<img src=x onerror=alert(1)>=2")
     told = page.locator("#hl-told span").all_inner_texts()
@@ -95,6 +97,7 @@ def test_what_an_address_cannot_set_is_told_in_the_words_of_python(opened):
     assert page.locator("#hl-told").inner_text() == str(refused.value)
 
 
+@pytest.mark.wide
 def test_a_tick_at_a_time_while_paused_and_not_while_a_number_is_typed(opened):
     page = opened()
     stage, status = page.locator(".hl-stage"), page.locator(".hl-status")
@@ -112,6 +115,7 @@ def test_a_tick_at_a_time_while_paused_and_not_while_a_number_is_typed(opened):
     assert "N next tick, C save as CSV, X reset all" in page.locator(".hl-help").inner_text()
 
 
+@pytest.mark.wide
 def test_a_recording_is_a_file_that_python_reads(opened, tmp_path):
     page = opened()
     stage = page.locator(".hl-stage")
@@ -128,6 +132,8 @@ def test_a_recording_is_a_file_that_python_reads(opened, tmp_path):
     assert np.array_equal(again["x"], log.x) and np.array_equal(again["F"], log.F)
     with page.expect_download() as kept:
         stage.press("c")
+    stage.press("y")
+    expect(page.locator(".hl-status")).to_contain_text("Replaying a record")
     table = kept.value.path().read_text()
     expected = log.to_csv(tmp_path / "own.csv").read_text()
     assert table.split("\n")[0] == expected.split("\n")[0]
@@ -135,6 +141,7 @@ def test_a_recording_is_a_file_that_python_reads(opened, tmp_path):
     assert np.array_equal(*rows, equal_nan=True)
 
 
+@pytest.mark.wide
 def test_code_is_copied_or_selected_where_that_is_not_allowed(opened):
     page = opened()
     page.evaluate("Object.defineProperty(navigator, 'clipboard', { value: undefined })")
@@ -143,6 +150,7 @@ def test_code_is_copied_or_selected_where_that_is_not_allowed(opened):
     assert page.locator("#hl-copied").inner_text().startswith("Selected")
 
 
+@pytest.mark.wide
 def test_a_page_runs_in_a_low_frame_without_its_own_origin(browser, files):
     page = browser.new_page(viewport={"width": 390, "height": 700})
     page.set_content("<iframe sandbox='allow-scripts' width='380' height='320'></iframe>")
@@ -157,10 +165,13 @@ def test_a_page_runs_in_a_low_frame_without_its_own_origin(browser, files):
 
 
 LOOKS = [(name, scheme, width) for name in SCENES for scheme in ("light", "dark") for width in (390, 1280)]
+WIDE = ("fixtures", "light", 1280), ("linkage", "dark", 390)
 
 
-@pytest.mark.parametrize(("name", "scheme", "width"), LOOKS)
-@pytest.mark.always("wall-dark-390")
+@pytest.mark.parametrize(
+    ("name", "scheme", "width"),
+    [pytest.param(*look, marks=pytest.mark.wide if look in WIDE else pytest.mark.slow) for look in LOOKS],
+)
 def test_everybody_can_use_it(opened, name, scheme, width):
     page = opened(name, color_scheme=scheme, viewport={"width": width, "height": 900})
     assert findings(page) == []
@@ -168,6 +179,7 @@ def test_everybody_can_use_it(opened, name, scheme, width):
     assert page.title() and page.evaluate("document.documentElement.lang") == "en"
 
 
+@pytest.mark.wide
 def test_a_browser_without_webassembly_says_what_to_do(browser, files):
     page = browser.new_page()
     page.add_init_script("delete window.WebAssembly")

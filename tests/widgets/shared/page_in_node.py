@@ -23,6 +23,19 @@ def in_node(cases):
     return json.loads(done.stdout)
 
 
+def evaluated(scripts, expression, **given):
+    """Return, by JSON, what an expression of JavaScript is after some scripts of the page, with ``given`` as its names."""
+    source = "\n".join((BROWSER / "page" / script).read_text("utf-8") for script in scripts)
+    code = f"""
+    const given = JSON.parse(require("fs").readFileSync(0, "utf-8"))
+    const work = new Function(...Object.keys(given), {json.dumps(source)} + ";return " + {json.dumps(expression)})
+    console.log(JSON.stringify(work(...Object.values(given))))
+    """
+    done = subprocess.run([NODE, "-e", code], input=json.dumps(given), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
 def text(numbers):
     """Return numbers as text that keeps every bit."""
     return base64.b64encode(np.ascontiguousarray(numbers, "<f8").tobytes()).decode()

@@ -38,6 +38,7 @@ def own_scene():
 
 
 @pytest.mark.parametrize("name", [name for name in CATALOGUE if name not in CONTACTS])
+@pytest.mark.always("two_masses", "virtual_fixture")
 def test_a_scene_written_out_compiles_to_the_same_program(name):
     scene = CATALOGUE[name].scene()
     made = made_by(written._written_out(scene))["scene"]
@@ -47,6 +48,7 @@ def test_a_scene_written_out_compiles_to_the_same_program(name):
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.always("stick_slip", "detents")
 def test_a_scene_of_the_library_is_a_call_of_the_library(name):
     scene = CATALOGUE[name].scene()
     first = next(iter(scene.values))

@@ -39,6 +39,7 @@ def in_mathml(math):
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.always("gears", "texture", "ball_on_the_paddle")
 def test_a_shared_file_shows_what_a_notebook_shows(name):
     scene = CATALOGUE[name].scene()
     shown, latex = equations(scene), scene._equations()

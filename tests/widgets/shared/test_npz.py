@@ -4,11 +4,12 @@ from dataclasses import replace
 from zipfile import ZipFile
 
 import numpy as np
-from page_scripts import in_node, needs_node
+import pytest
+from page_in_node import NODE, evaluated
 
 import hapticlab as hl
 
-pytestmark = needs_node
+pytestmark = pytest.mark.skipif(NODE is None, reason="the scripts of a page are run by node 18 or newer")
 COLUMNS = """Object.fromEntries(
     Object.entries(log.columns).map(([name, column]) => [name, Float64Array.from(column, (one) => one ?? NaN)]))"""
 WRITE = f'Buffer.from(recordFile({{ ...log, columns: {COLUMNS} }}, told)).toString("base64")'
@@ -20,7 +21,7 @@ def written(log, path):
     columns = {name: [None if value != value else value for value in getattr(log, name).tolist()] for name in names}
     about = {"columns": columns, "parameters": log.parameters, "changes": log.changes, "T": log.T, "fault": log.fault}
     told = {name: getattr(log, name) for name in ("scene", "paddle", "delay", "sensor_delay", "units")} | {"force_max": 1.0}
-    path.write_bytes(base64.b64decode(in_node(["page/npz.js"], WRITE, log=about, told=told)))
+    path.write_bytes(base64.b64decode(evaluated(["npz.js"], WRITE, log=about, told=told)))
     return path
 
 
