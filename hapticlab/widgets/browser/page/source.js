@@ -106,7 +106,7 @@ class PageSource {
 
   recorded() {
     const log = this.motion.recorded
-    if (!log) throw new Error("nothing is recorded yet; press Record, and Stop recording")
+    if (!log) throw new Refusal("nothing is recorded yet; press Record, and Stop recording")
     return log
   }
 
@@ -169,11 +169,13 @@ class PageSource {
     })
   }
 
+  // What is thrown is told, and anything but a refusal stops what moves.
   guarded(work) {
     try {
       work()
     } catch (problem) {
       this.say(problem.message)
+      if (!(problem instanceof Refusal)) this.pause()
     }
   }
 
@@ -227,3 +229,6 @@ class PageSource {
     return { ...news, values: this.values, wanted: motion.held ? this.wanted : motion.place }
   }
 }
+
+// Why something that was pressed cannot be done: nothing is wrong with what moves.
+class Refusal extends Error {}
