@@ -20,6 +20,8 @@ EXTENSIONS = {
     "jupyterlite-pyodide-kernel": "@jupyterlite/pyodide-kernel-extension",
 }
 APPS = ("lab", "notebooks", "tree")
+#: light or dark as the reader's system is, like the first page
+SETTINGS = {"@jupyterlab/apputils-extension:themes": {"adaptive-theme": True}}
 #: from the worker in which Python runs, which is where it is in that extension, to the site's wheels
 WHEELS = "../../../../pypi"
 
@@ -64,6 +66,7 @@ def prepare(folder, theirs, wheels):
     kernel = {"disablePyPIFallback": True, "loadPyodideOptions": {"packages": packages}}
     page = {"appName": "hapticlab", "litePluginSettings": {KERNEL: kernel}}
     (folder / "jupyter_lite_config.json").write_text(json.dumps(build), "utf-8")
+    (folder / "overrides.json").write_text(json.dumps(SETTINGS), "utf-8")
     lite = {"jupyter-lite-schema-version": 0, "jupyter-config-data": page}
     (folder / "jupyter-lite.json").write_text(json.dumps(lite), "utf-8")
 

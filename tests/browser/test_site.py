@@ -1,0 +1,152 @@
+"""A site of the labs in Chromium: a lab opens and runs, a view moves, and a downloaded notebook earns what it should.
+
+Nothing but the site may be asked: every request beyond its address is refused and fails the test.
+"""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from axe import findings
+from lab import ask, grab, picture, run_all, run_cell, see
+from pyodide_archive import archive
+from sites import open_lab, served, visited
+
+import hapticlab as hl
+from hapticlab.cli.main import main
+from hapticlab.course.instructor import solved_notebook
+from hapticlab.course.labs import find_labs
+from hapticlab.site.build import build_site
+
+ANSWERS = Path(__file__).parents[1] / "instructor"
+FIRST, CHECK = "import numpy as np", 'own = hl.check("02.period_leak"'
+# Counts the pictures that differ from the one before, from now on.
+COUNT = """() => {
+  const canvas = document.querySelector("canvas.hl-stage"), context = canvas.getContext("2d")
+  window.shown = { pictures: 0, from: performance.now() }
+  let before = 0
+  canvas.parentElement.addEventListener("painted", () => {
+    const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data
+    let sum = 0
+    for (let i = 0; i < pixels.length; i += 52) sum = (31 * sum + pixels[i]) | 0
+    if (sum !== before) window.shown.pictures += 1
+    before = sum
+  })
+}"""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site") / "site"
+    build_site(folder, pyodide=archive(), say=lambda words: None)
+    with served(folder) as address:
+        yield address
+
+
+@pytest.fixture
+def page(complete, browser, site):
+    with visited(browser, site) as opened:
+        yield opened
+
+
+def cells(page):
+    """The source of every cell of the open notebook."""
+    return page.evaluate(
+        "() => window.jupyterapp.shell.currentWidget.content.widgets.map((c) => c.model.sharedModel.getSource())"
+    )
+
+
+def download(page, folder):
+    """Save the notebook and download it, by the menu; return the file."""
+    for entry in ("docmanager:save", "docmanager:download"):
+        page.locator("li.lm-MenuBar-item:has-text('File')").click()
+        item = page.locator(f"li.lm-Menu-item[data-command='{entry}']")
+        if entry == "docmanager:save":
+            item.click()
+        else:
+            with page.expect_download() as coming:
+                item.click()
+    path = folder / coming.value.suggested_filename
+    coming.value.save_as(path)
+    return path
+
+
+def points(path, capsys):
+    """What `hapticlab grade` says of a notebook of lab 02."""
+    assert main(["grade", str(path), "--instructor", str(ANSWERS), "--sandbox", "namespaces"]) == 0
+    return re.search(r"(\S+) of 10 points", capsys.readouterr().out)[1]
+
+
+@pytest.mark.wide
+def test_a_lab_opens_from_the_first_page_and_its_first_cell_runs_as_it_is(page, site):
+    open_lab(page, site, "02")
+    assert "m = 0.03 kg" in run_cell(page, FIRST)
+    seen = ask(page, "import os; print(os.getcwd(), *sorted(os.listdir()))")
+    assert seen == "/drive/02_virtual_wall 02_virtual_wall.ipynb checks.py"  # so that a check reads the lab's own
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_view_moves_in_the_browser(complete, browser, site, scheme):
+    with visited(browser, site, color_scheme=scheme) as page:
+        open_lab(page, site, "02")
+        for beginning in (FIRST, "wall = hl.wall()", "view = hl.live(paddle"):
+            run_cell(page, beginning)
+        see(page, ".hl-stage")
+        x, y = grab(page, ".hl-stage")
+        page.evaluate(COUNT)
+        for k in range(240):
+            page.mouse.move(x + 60 * (1 - abs(k % 80 - 40) / 20), y)
+            page.wait_for_timeout(16)
+        shown = page.evaluate("() => ({ ...window.shown, until: performance.now() })")
+        page.mouse.up()
+        picture(page, f"site_lab_{scheme}")
+        assert page.evaluate("() => document.body.dataset.jpThemeLight") == ("true" if scheme == "light" else "false")
+        print(f"{1000 * shown['pictures'] / (shown['until'] - shown['from']):.1f} frames/s")
+        assert shown["pictures"] >= 60  # in about 4 s; a view that hangs has 1
+
+
+@pytest.mark.slow
+def test_a_solved_lab_that_is_downloaded_earns_in_the_grader_what_it_earns_on_a_desktop(page, site, tmp_path, capsys):
+    open_lab(page, site, "02")
+    untouched = download(page, tmp_path)
+    assert untouched.name.endswith("02_virtual_wall.ipynb") and points(untouched, capsys) == "0"
+    lab = next(lab for lab in find_labs() if lab.number == "02")
+    solved = solved_notebook(lab, ANSWERS / lab.name)
+    page.evaluate("(given) => window.jupyterapp.shell.currentWidget.context.model.fromJSON(given)", solved)
+    run_all(page)
+    last = [k for k, cell in enumerate(solved["cells"]) if cell["cell_type"] == "code"][-1]
+    page.wait_for_function(
+        "(k) => window.jupyterapp.shell.currentWidget.content.widgets[k].model.executionCount", arg=last, timeout=240_000
+    )
+    handed_in = download(page, tmp_path)
+    assert points(handed_in, capsys) == "10"
+    ran = json.loads(handed_in.read_text("utf-8"))
+    failed = [output for cell in ran["cells"] for output in cell.get("outputs", ()) if output["output_type"] == "error"]
+    assert not failed
+    page.reload()  # what was saved is there again, in this browser
+    page.wait_for_function("() => window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel")
+    assert cells(page) == ["".join(cell["source"]) for cell in ran["cells"]]
+
+
+@pytest.mark.slow
+def test_the_simulated_board_answers_in_lab_00(page, site):
+    open_lab(page, site, "00")
+    run_cell(page, FIRST)
+    found = run_cell(page, 'print(hl.doctor("sim://hapkit"))').splitlines()
+    expected = str(hl.doctor("sim://hapkit")).splitlines()
+    assert [line.split()[:1] for line in found] == [line.split()[:1] for line in expected]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_first_page_is_usable_by_everybody(complete, browser, site, width, scheme):
+    with visited(browser, site, width=width, color_scheme=scheme) as page:
+        page.goto(f"{site}/index.html")
+        assert findings(page, "body") == []
+        assert page.evaluate("() => document.documentElement.scrollWidth <= window.innerWidth")
+        picture(page, f"site_first_page_{width}_{scheme}")
+        for address in page.evaluate("() => [...document.links].map((a) => a.href)"):
+            assert page.request.get(address).ok, address
