@@ -74,6 +74,8 @@ def share(
         For a paddle that is not simulated, and a time_scale out of its range.
     ParameterError
         For sliders of what cannot be set, and a parameter without a value.
+    AnalysisError
+        For a drawing function that does not use functions of NumPy alone, see docs/sharing.md.
     OSError
         Where the file cannot be written.
 
