@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from axe import findings
+from lab import picture
 
 import hapticlab as hl
 from hapticlab.device.simulated.stepping import Stepping
@@ -176,7 +177,19 @@ def test_everybody_can_use_it(opened, name, scheme, width):
     page = opened(name, color_scheme=scheme, viewport={"width": width, "height": 900})
     assert findings(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+    picture(page, f"shared_{name}_{scheme}_{width}")
     assert page.title() and page.evaluate("document.documentElement.lang") == "en"
+
+
+@pytest.mark.wide
+def test_without_scripts_the_page_shows_its_picture_its_equations_and_what_to_do(browser, files):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(files["linkage"])
+    assert page.get_by_role("img", name="first picture").bounding_box()["height"] > 100
+    assert "needs JavaScript" in page.locator("#hl-view").inner_text()
+    assert page.locator("math").count() == len(SCENES["linkage"]._equations())
+    context.close()
 
 
 @pytest.mark.wide

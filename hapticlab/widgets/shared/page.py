@@ -19,7 +19,7 @@ WAITING = (
 NO_SCRIPT = "This page runs a simulation, which needs JavaScript. Allow it for this file, or open the file in another browser."
 
 
-def page(data, lead="", body=""):
+def page(data, lead="", body="", picture=""):
     """Return the text of a shared file.
 
     Parameters
@@ -30,10 +30,12 @@ def page(data, lead="", body=""):
         A sentence on the scene, in plain text.
     body : str
         HTML below the view, without scripts, without styles in attributes.
+    picture : str
+        An element that stands in the place of the view until it runs.
     """
     main = f"""<p class="hl-lead">{escape(lead)}</p>
 <p id="hl-told" role="status"></p>
-<div id="hl-view"><p>{WAITING}</p><noscript><p>{NO_SCRIPT}</p></noscript></div>
+<div id="hl-view">{picture}<p>{WAITING}</p><noscript><p>{NO_SCRIPT}</p></noscript></div>
 {body}"""
     scripts = (*VIEW_SCRIPTS, *PAGE_SCRIPTS)
     return document(data["scene"], main, data, scripts=scripts, styles=STYLES, description=lead)

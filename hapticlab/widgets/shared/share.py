@@ -19,6 +19,7 @@ from .around import body, lead
 from .code import shared_code
 from .page import page
 from .page_data import page_data
+from .still import still
 from .units import units
 
 if TYPE_CHECKING:
@@ -104,7 +105,8 @@ def share(
     }
     python = _code(code, scene, paddle, given | compile_options)
     data = page_data(stage) | {"metric": units(), "code": python}
-    text = page(data, lead(scene), body(scene, python))
+    picture = still(stage.drawn(None), stage.picture.box, f"{scene.name}: the first picture of the scene")
+    text = page(data, lead(scene), body(scene, python), picture)
     path = Path(_file_name(scene.name) if path is None else path)
     path.write_text(text, "utf-8")
     return SharedFile(path, len(text.encode()), stage.source.program.name)
