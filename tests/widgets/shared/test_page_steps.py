@@ -90,3 +90,17 @@ def test_samples_and_faults_are_those_of_python():
 @pytest.mark.wide
 def test_samples_of_mechanisms_and_contacts_are_those_of_python():
     assert set(compare(MORE).values()) == {None}
+
+
+def test_a_noisy_sensor_and_hand_have_the_noise_that_the_paddle_says():
+    """Another generator's than Python's: with the noise of both, the same size, and none is drawn of a hand that is gone."""
+    paddle = replace(PLAIN, noise=2e-5, hand=hl.Hand("pinch", push_noise=0.3), seed=4)
+    told = page_data(Stage(paddle, WALL, clock=lambda: 0.0))
+    rest = {"intent": text(np.zeros(4001))}
+    (answer,) = in_node([("steps", {"told": told, "plan": [rest, {"hold": False}, rest]})])
+    (held, known), free = (answer["found"][0], Stepping(paddle, WALL).advance(np.zeros(4001))), answer["found"][1]
+    for part in (held, free):
+        error = array(part["x"]) - array(part["x_true"])
+        assert error.std() == pytest.approx(2e-5, rel=4 / np.sqrt(8000)) and abs(error.mean()) < 2e-6
+    assert array(held["x_true"]).std() == pytest.approx(known["x_true"].std(), rel=0.4)  # the hand shakes it as much
+    assert np.all(np.isnan(array(free["intent"])))
