@@ -38,7 +38,7 @@ def shared_out(common, workers=None):
     if callable(workers):
         yield lambda function, arguments: workers(functools.partial(function, common), arguments)
         return
-    if workers == 1 or "fork" not in multiprocessing.get_all_start_methods() or sys.platform == "darwin":
+    if workers == 1 or sys.platform != "linux":
         yield lambda function, arguments: (function(common, argument) for argument in arguments)
         return
     with ProcessPoolExecutor(workers, multiprocessing.get_context("fork"), _begin, (common,)) as pool:
