@@ -31,6 +31,17 @@ sys.path.remove("") if "" in sys.path else None  # hapticlab is what is installe
 await micropip.install(${JSON.stringify(names)})
 `);
 
+// what a run leaves on the event loop, such as a live view, would take its time from the next one
+const ENDING = `
+import asyncio, sys
+left = asyncio.all_tasks() - {asyncio.current_task()}
+for task in left:
+    task.cancel()
+await asyncio.gather(*left, return_exceptions=True)
+sys.stdout.flush()
+sys.stderr.flush()
+`;
+
 async function run({ code, values, folder }) {
   printed.length = left.length = 0;
   let error = null;
@@ -43,7 +54,7 @@ async function run({ code, values, folder }) {
   } catch (raised) {
     error = raised.message;
   }
-  pyodide.runPython("import sys; sys.stdout.flush(); sys.stderr.flush()");
+  await pyodide.runPythonAsync(ENDING);
   names.destroy();
   pyodide.FS.chdir("/");
   if (folder) pyodide.FS.unmount("/folder");

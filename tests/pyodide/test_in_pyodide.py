@@ -21,6 +21,21 @@ print("é", end="")
         run_in_pyodide("word")
 
 
+def test_what_a_run_leaves_on_the_event_loop_ends_with_it():
+    code = """
+import asyncio, sys
+async def goes_on():
+    while True:
+        sys.counted = getattr(sys, "counted", 0) + 1
+        await asyncio.sleep(0)
+sys.kept = asyncio.ensure_future(goes_on())
+await asyncio.sleep(0.01)
+print(sys.counted > 0)
+"""
+    assert run_in_pyodide(code) == "True\n"
+    assert run_in_pyodide("import sys\nprint(sys.kept.cancelled())") == "True\n"
+
+
 def test_the_wheel_for_a_browser_is_pure_and_brings_engines_labs_and_a_board():
     assert wheel().name.endswith("-py3-none-any.whl")
     code = """
