@@ -12,6 +12,13 @@ from contextlib import chdir
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+#: the same in Pyodide, with the checkout as its folder; name and given are values
+IN_PYODIDE = """
+import json, sys
+sys.path.append("/folder/tests/pyodide")
+import both_ways
+print(json.dumps(getattr(both_ways, name)(*given)))
+"""
 
 
 def untouched_lab(number):
@@ -63,7 +70,7 @@ def _lab_run(folder, notebook):
                 ran = shell.run_cell(source)
             texts = [seen.stdout, *(output.data.get("text/plain", "") for output in seen.outputs)]
             printed += [line for text in texts for line in text.splitlines()]
-            raised += [f"{type(problem).__name__}: {problem}" for problem in (ran.error_before_exec, ran.error_in_exec) if problem]
+            raised += [f"{type(error).__name__}: {error}" for error in (ran.error_before_exec, ran.error_in_exec) if error]
     found = marks(folder.lab(), shell.user_ns, hidden_cases(folder.lab(), _answers(folder)))
     return {"printed": printed, "raised": raised, "marks": [[m.exercise, m.earned, m.right, m.cases, m.words] for m in found]}
 

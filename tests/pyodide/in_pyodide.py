@@ -95,7 +95,11 @@ class Pyodide:
         command = [node, Path(__file__).with_suffix(".mjs"), archive(), wheel()]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         atexit.register(self.close)
-        self._answer(120)
+        self._answer(280)
+
+    @property
+    def pid(self):
+        return self._process.pid
 
     def ask(self, request, seconds):
         self._process.stdin.write(json.dumps(request) + "\n")

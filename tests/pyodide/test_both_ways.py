@@ -8,26 +8,21 @@ import sys
 import both_ways
 import numpy as np
 import pytest
-from in_pyodide import ROOT, run_in_pyodide
+from both_ways import IN_PYODIDE, ROOT
+from in_pyodide import run_in_pyodide
 
 from hapticlab.course.labs import find_labs
 
 LABS = [folder.number for folder in find_labs(ROOT / "labs")]
 #: run by .ci/run, all others by .ci/full
 WIDE = {("untouched_lab", "02"), ("solved_lab", "06"), ("sweep",)}
-#: of a lab: how a line begins whose number is what remains when nearly equal numbers are subtracted. The gains of a dead-beat wall
-#: come from LAPACK, and every build of it rounds in an order of its own.
+#: lab: beginnings of lines whose number is what remains when nearly equal numbers are subtracted. The gains of a dead-beat
+#: wall come from LAPACK, and every build of it rounds in an order of its own.
 ROUNDING = {"04": ("dead-beat: ",)}
-CODE = """
-import json, sys
-sys.path.append("/folder/tests/pyodide")
-import both_ways
-print(json.dumps(getattr(both_ways, name)(*given)))
-"""
 
 
 def there(name, *given):
-    return json.loads(run_in_pyodide(CODE, ROOT, name=name, given=given).splitlines()[-1])
+    return json.loads(run_in_pyodide(IN_PYODIDE, ROOT, name=name, given=given).splitlines()[-1])
 
 
 def here(name, *given):
