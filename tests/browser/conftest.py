@@ -1,4 +1,6 @@
-"""JupyterLab once for all tests in this folder, and a headless Chromium for each module."""
+"""JupyterLab and a headless Chromium, once for all tests in this folder."""
+
+import asyncio
 
 import pytest
 from lab import Lab, browsing, missing
@@ -18,11 +20,26 @@ def server(complete, tmp_path_factory):
         yield running
 
 
-@pytest.fixture(scope="module")
-def browser(complete):
-    """A Chromium that ends with its module, and Playwright's event loop with it: other tests run loops of their own."""
+@pytest.fixture(scope="package")
+def chromium(complete):
+    """A Chromium for this folder, which takes a second to start; Playwright's event loop runs in this thread until it ends."""
     with browsing() as started:
         yield started
+    with pytest.raises(RuntimeError):
+        asyncio.get_running_loop()  # other tests run loops of their own
+
+
+@pytest.fixture(scope="module")
+def browser(chromium):
+    """The folder's Chromium; the pages of a module end with it."""
+    yield chromium
+    for context in chromium.contexts:
+        context.close()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def no_loop_is_left():
+    """In this folder a loop outlives its module: the Chromium of the folder looks after its end."""
 
 
 @pytest.fixture(scope="module")
