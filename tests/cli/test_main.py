@@ -44,12 +44,12 @@ def from_nothing(*arguments, folder):
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory):
     folder = tmp_path_factory.mktemp("demo")
-    return from_nothing("demo", "--quick", "--json", folder=folder), folder
+    return command("demo", "--quick", "--json", folder=folder), folder
 
 
 @pytest.mark.wide
-def test_demo_prints_json_and_nothing_else(demo):
-    done, _ = demo
+def test_demo_prints_json_and_nothing_else(tmp_path):
+    done = from_nothing("demo", "--quick", "--json", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     facts = json.loads(done.stdout)
     # 2 b/T of the published set, m = 0.166 kg, b = 0.057 N s/m, T = 1 ms
