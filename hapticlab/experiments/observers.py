@@ -103,12 +103,15 @@ class PersonObserver(ShowsItself):
     feedback: bool = False
 
     def ready(self, task: Task, which: Answer) -> None:
+        """Ask the person to hold the handle, and wait for Enter."""
         self.person.ask(f"{which.capitalize()} one: hold the handle and press Enter, then feel it for {task.duration:g} s.")
 
     def compare(self, task: Task, logs: Sequence[Telemetry], trial: int) -> Answer:
+        """Return the answer of the person, "first" or "second"."""
         return self.person.choose(task.question, INTERVALS)
 
     def told(self, right: bool) -> None:
+        """Say whether the answer was right, where feedback is on."""
         if self.feedback:
             self.person.say("right" if right else "wrong")
 

@@ -116,10 +116,12 @@ class Psi(ShowsItself):
 
     @property
     def done(self) -> bool:
+        """Whether as many answers as were planned are in."""
         return self.told >= self.most_trials
 
     @property
     def level(self) -> float:
+        """The level of the next trial, ln(comparison/standard): the level whose answer is expected to teach most."""
         return float(self.levels[np.argmin(self.expected_entropy())])
 
     def expected_entropy(self) -> Array:
@@ -171,10 +173,12 @@ class ConstantLevels(ShowsItself):
 
     @property
     def done(self) -> bool:
+        """Whether each level was answered as often as planned."""
         return self.told >= len(self.order)
 
     @property
     def level(self) -> float:
+        """The level of the next trial, ln(comparison/standard)."""
         return self.order[self.told]
 
     def answer(self, right: bool) -> None:

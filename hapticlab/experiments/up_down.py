@@ -131,6 +131,7 @@ class UpDown(ShowsItself):
 
     @property
     def done(self) -> bool:
+        """Whether the level has reversed as often as planned, or the staircase gave up at an end of its range."""
         return len(self.turned) >= self.reversals or self.gave_up is not None
 
     def answer(self, right: bool) -> None:

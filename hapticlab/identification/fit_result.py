@@ -56,8 +56,19 @@ class Estimate(ShowsItself):
         return f"{self.name} = {self.value:.{digits}g} {self.unit}, between {self.low:.{digits}g} and {self.high:.{digits}g}"
 
 
+class Estimated(Tabular):
+    """A result that holds an :class:`Estimate` for each of its constants, by name."""
+
+    estimates: dict[str, Estimate]
+
+    def __getitem__(self, name: str) -> Estimate:
+        if name not in self.estimates:
+            raise AnalysisError(f"{name!r} was not estimated; the estimates are {', '.join(self.estimates)}")
+        return self.estimates[name]
+
+
 @dataclass(frozen=True, eq=False)
-class Found(Tabular):
+class Found(Estimated):
     """Constants found from records; ``found["m"]`` is an :class:`Estimate`. Print it, or plot what it left.
 
     An identification has a class of its own below this one: ``about``, ``constants`` and what stands between add to it.
@@ -106,11 +117,6 @@ class Found(Tabular):
     measured: Array
     fitted: Array
     T: float
-
-    def __getitem__(self, name: str) -> Estimate:
-        if name not in self.estimates:
-            raise AnalysisError(f"{name!r} was not estimated; the estimates are {', '.join(self.estimates)}")
-        return self.estimates[name]
 
     @property
     def dithered(self) -> bool:

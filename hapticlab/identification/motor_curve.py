@@ -9,10 +9,9 @@ import numpy as np
 
 from ..base.drawing import FRAME, STYLES, house_style, new_figure
 from ..base.grid import Grid
-from ..base.shows_itself import Tabular
 from ..base.statistics import student
 from ..errors import AnalysisError
-from .fit_result import Estimate
+from .fit_result import Estimate, Estimated
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,7 +29,7 @@ VAGUE, POOR = 0.1, 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class MotorCurve(Tabular):
+class MotorCurve(Estimated):
     """What a motor gives for a duty; ``found["duty_dead"]`` is an Estimate. Print it, or plot what it was found from.
 
     Attributes
@@ -48,11 +47,6 @@ class MotorCurve(Tabular):
     rms: float
     duties: Array
     forces: Array
-
-    def __getitem__(self, name: str) -> Estimate:
-        if name not in self.estimates:
-            raise AnalysisError(f"{name!r} was not estimated; the estimates are {', '.join(self.estimates)}")
-        return self.estimates[name]
 
     def force(self, duties: ArrayLike) -> Array:
         """Return the force [N] at duties 0 ... 1, without the offset."""

@@ -81,6 +81,7 @@ class PassivityMargin(ShowsItself):
 
     @property
     def passive(self) -> bool:
+        """Whether the damping of the device is at least the damping required."""
         return self.b >= self.required
 
     def asked(self, theta: ArrayLike) -> Array:

@@ -63,6 +63,7 @@ class CompensationLimit(ShowsItself):
 
     @property
     def dry(self) -> float:
+        """The fraction of the Coulomb friction that can be compensated where no viscous friction is."""
         return self.hunts_from(0.0)
 
     def left(self, viscous: float) -> float:

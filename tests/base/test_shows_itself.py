@@ -102,6 +102,13 @@ def test_every_class_that_a_public_call_returns_shows_itself():
     assert {f"{kind.__module__}.{kind.__name__}": said for kind in kinds if (said := lacks(kind))} == {}
 
 
+def test_every_public_name_and_every_method_that_it_leads_to_is_described():
+    assert [name for name, thing in public() if not inspect.getdoc(thing)] == []
+    known = [(kind, method.__name__) for kind in reached() for method in methods(kind)]
+    assert len(known) > 300
+    assert [f"{kind.__name__}.{name}" for kind, name in known if not inspect.getdoc(getattr(kind, name))] == []
+
+
 def test_a_new_result_without_a_display_is_found():
     @dataclass
     class Plain:

@@ -79,6 +79,7 @@ class Reduction(ShowsItself):
 
     @property
     def within(self) -> bool:
+        """Whether the largest error is within the tolerance, and every pole near its place."""
         return self.largest <= self.tolerance and self.shift <= BESIDE
 
     @property

@@ -103,6 +103,7 @@ class _Sampled:
 
     @property
     def free_symbols(self) -> set[Any]:
+        """What SymPy takes the value to depend on; the time is among it."""
         symbols = super().free_symbols  # type: ignore[misc]
         return symbols | {t} if n in symbols else symbols
 
