@@ -1,6 +1,7 @@
 """What the command line does with a scene that is shared: one file for any browser."""
 
 import sys
+import tokenize
 from pathlib import Path
 
 from ..widgets.shared.code import why_private
@@ -13,7 +14,7 @@ def share(parser, options):
     """Write a scene file as a file for any browser, and say what it runs."""
     chosen = compiling(parser, options)
     file, path = opened(parser, options), Path(options.file)
-    code = _code(path.read_text("utf-8"), options) if _may_be_copied(path, options) else False
+    code = _code(_text(path), options) if _may_be_copied(path, options) else False
     shared = write_file(file.scene, file.paddle, options.out or f"{path.stem}.html", let_go=options.let_go, code=code, **chosen)
     program = file.paddle.program(file.scene, **chosen)
     values = {c.name: value for c, value in zip(program.parameters, program.values, strict=True)}
@@ -33,11 +34,17 @@ def share(parser, options):
     return tell(options, facts, {"file": shared.path}, "\n".join(lines))
 
 
+def _text(path):
+    """Return the text of a Python file, in the encoding that it names."""
+    with tokenize.open(path) as file:
+        return file.read()
+
+
 def _may_be_copied(path, options):
     """Tell whether readers may copy the text of the scene file; ask, where there is someone to ask."""
     if options.code is not None:
         return options.code
-    why = why_private(path.read_text("utf-8"))
+    why = why_private(_text(path))
     if options.json or not sys.stdin.isatty():
         return not why
     doubt = f" ({why})" if why else ""

@@ -71,7 +71,7 @@ def test_readers_copy_the_text_unless_it_is_refused_or_private(scene_file, monke
     asked = io.StringIO(f"{answer}\n")
     monkeypatch.setattr(asked, "isatty", lambda: True)
     monkeypatch.setattr("sys.stdin", asked)
-    (scene_file / "soft.py").write_text(text)
+    (scene_file / "soft.py").write_bytes(f"# coding: latin-1\n# Körper\n{text}".encode("latin-1"))
     assert main.main(["share", "soft.py", *given]) == 0
     assert (data_of(scene_file / "soft.html")["code"] is not None) == shown
     assert ("ada" in (scene_file / "soft.html").read_text()) == (shown and "ada" in text)

@@ -2,6 +2,7 @@
 
 from html import escape
 
+from ...errors import ParameterError
 from ...library.entries import CATALOGUE
 from .equations import equations
 from .scene_code import library_name
@@ -36,6 +37,26 @@ def lead(scene):
     head, _, rest = title.partition(": ")
     said = rest if head.lower() == scene.name else title
     return f"{said[0].upper()}{said[1:]}."
+
+
+def fixed(scene, source):
+    """Return, of each parameter that a page cannot change, the sentence on why, name -> words.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.device.simulated.stepping import Stepping
+    >>> paddle, gears = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), hl.library.gears()
+    >>> fixed(gears, Stepping(paddle, gears))["N_1"]
+    'N_1 is not a live parameter of gears (N_1: in a constraint, so not live). It has J_1, J_2, K, b_c, c, r.'
+    """
+    found = {}
+    for name in scene.parameters:
+        try:
+            source.check(**{name: scene.values[name]})
+        except ParameterError as why:
+            found[name] = str(why)
+    return found
 
 
 def body(scene, code):

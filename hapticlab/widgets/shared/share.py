@@ -15,7 +15,7 @@ from ...errors import PaddleError
 from ...scene.scene import check_scene
 from ..live import SPEEDS
 from ..stage import Stage
-from .around import body, lead
+from .around import body, fixed, lead
 from .code import shared_code
 from .page import page
 from .page_data import page_data
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
     from ...base.annotations import File
     from ...scene.scene import Scene
+
+#: options of :func:`share` that its code to copy does not name
+USUAL = {"sliders": None, "time_scale": 1.0, "picture": None, "let_go": False}
 
 
 def share(
@@ -99,12 +102,10 @@ def share(
     speed = number("time_scale", time_scale, "", "a shared file", least=slowest, most=fastest, why=why, error=PaddleError)
     looks = {"sliders": sliders, "speed": speed, "picture": picture, "let_go": let_go}
     stage = Stage(paddle, scene, clock=time.monotonic, **looks, **compile_options)
-    given = {name: value for name, value in (("sliders", sliders), ("picture", picture)) if value is not None}
-    given |= {
-        name: value for name, value, usual in (("time_scale", speed, 1.0), ("let_go", bool(let_go), False)) if value != usual
-    }
-    python = _code(code, scene, paddle, given | compile_options)
-    data = page_data(stage) | {"metric": units(), "code": python}
+    given = {"sliders": sliders, "time_scale": speed, "picture": picture, "let_go": bool(let_go)}
+    changed = {name: value for name, value in given.items() if value != USUAL[name]}
+    python = _code(code, scene, paddle, changed | compile_options)
+    data = page_data(stage) | {"metric": units(), "code": python, "fixed": fixed(scene, stage.source)}
     picture = still(stage.drawn(None), stage.picture.box, f"{scene.name}: the first picture of the scene")
     text = page(data, lead(scene), body(scene, python), picture)
     path = Path(_file_name(scene.name) if path is None else path)

@@ -6,7 +6,9 @@ from page_in_node import NODE, evaluated
 import hapticlab as hl
 from hapticlab import n, x
 from hapticlab.cli.options import parser
+from hapticlab.device.simulated.stepping import Stepping
 from hapticlab.errors import HapticlabError
+from hapticlab.widgets.shared.around import fixed
 from hapticlab.widgets.shared.units import units
 
 pytestmark = pytest.mark.skipif(NODE is None, reason="the scripts of a page are run by node 18 or newer")
@@ -73,6 +75,15 @@ def test_an_unknown_name_gets_the_sentence_of_python():
         with pytest.raises(HapticlabError) as refused:
             OWN(**{name: value})
         assert found["problems"][0].replace(f" = {value}:", f" = '{value}':") == str(refused.value)
+
+
+def test_a_parameter_that_is_not_live_says_why():
+    gears = hl.library.gears()
+    told = TOLD | {"fixed": fixed(gears, Stepping(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), gears))}
+    (found,) = evaluated(ADDRESS, "[readAddress('#N_1=12;constructor=1', told)]", told=told)
+    with pytest.raises(HapticlabError) as refused:
+        Stepping(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), gears).set(N_1=12)
+    assert found["problems"][0] == str(refused.value) and "no parameter constructor" in found["problems"][1]
 
 
 def test_what_was_changed_is_written_and_read_again():

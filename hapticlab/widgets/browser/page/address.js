@@ -11,8 +11,8 @@ const ANGLES = { rad: 1, deg: Math.PI / 180 }
 
 // Return {values, flags, traces, problems} of an address: numbers in SI by name, the flags that it names, traces or null, and
 // sentences on what is not understood. parameters: {name, unit} each; units: as hapticlab/widgets/shared/units.py; flags: names
-// without a value; traces: those that there are.
-function readAddress(hash, { parameters, units, flags, traces }) {
+// without a value; traces: those that there are; fixed: why other parameters of the scene cannot be changed, by name.
+function readAddress(hash, { parameters, units, flags, traces, fixed = {} }) {
   const found = { values: Object.create(null), flags: [], traces: null, problems: [] }
   const text = decoded(hash.replace(/^#/, ""))
   if (text.length > LONGEST_ADDRESS) {
@@ -27,6 +27,7 @@ function readAddress(hash, { parameters, units, flags, traces }) {
     if (!part.trim()) continue
     if (equals < 0 && flags.includes(name)) found.flags.push(name)
     else if (equals < 1 || !written) found.problems.push(`${quoted(part)} sets nothing; write NAME=VALUE, such as k=300 or x_o=10mm`)
+    else if (!parameter && Object.hasOwn(fixed, name)) found.problems.push(fixed[name])
     else if (!parameter && name === "traces") {
       const names = written.split(",").map((each) => each.trim())
       found.traces = traces.filter((each) => names.includes(each))

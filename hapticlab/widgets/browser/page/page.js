@@ -16,7 +16,8 @@ class Page {
   constructor(source, view, told) {
     Object.assign(this, { source, view, told })
     const { traces } = told.about
-    this.words = { parameters: told.parameters, units: told.metric, flags: [SLOW_MOTION], traces: traces.map((each) => each.name) }
+    const named = { flags: [SLOW_MOTION], traces: traces.map((each) => each.name) }
+    this.words = { parameters: told.parameters, fixed: told.fixed, units: told.metric, ...named }
     this.own = traces.filter((each) => each.open).map((each) => each.name)
     this.said = document.getElementById("hl-told")
     this.code = document.getElementById("hl-code")
