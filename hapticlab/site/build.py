@@ -15,7 +15,7 @@ from ..course.labs import find_labs
 from ..errors import CourseError
 from . import licences, lite, needs, pyodide_archive, wheels
 from .front_page import front_page
-from .pages import write_pages
+from .pages import PAGES, write_pages
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,6 +71,7 @@ def build_site(
         say(f"JupyterLite with {len(find_labs())} labs, {_megabytes(made)}")
         (made / "index.html").write_text(front_page(find_labs(), **sizes), "utf-8")
         write_pages(made)
+        say(f"{len(PAGES)} pages that need no Python")
         if lacking := licences.write(made):
             say(f"without a licence text: {', '.join(lacking)}. Look for their terms before you publish the site")
         (made / ".nojekyll").touch()  # GitHub's pages would leave files out

@@ -45,7 +45,7 @@ def front_page(labs: Sequence[LabFolder], *, local: float | None, wheels: float,
     count = WORDS[len(labs)] if len(labs) < len(WORDS) else str(len(labs))
     return Template(TEMPLATE.read_text("utf-8")).substitute(
         count=count,
-        scenes=_linked("scenes", "Feel it at once, before any Python loads", [page for page in pages if page.scene]),
+        scenes=_linked("scenes", "Try a scene at once, before any Python loads", [page for page in pages if page.scene]),
         labs="\n".join(map(_lab, labs)),
         pages=_linked("pages", "Also here", [page for page in pages if not page.scene]),
         start=SECONDS,

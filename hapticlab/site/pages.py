@@ -38,7 +38,26 @@ class Page:
 
 
 #: a page is added here, and by nothing else: it is written, linked from the front page, and covered by hapticlab's licence
-PAGES: tuple[Page, ...] = ()
+PAGES = (
+    Page(
+        "wall.html", "A virtual wall", "Push into a spring, and make it stiff until it chatters.", "site.scenes.wall", scene=True
+    ),
+    Page(
+        "pendulum.html",
+        "A pendulum in the hand",
+        "Swing it, and see how it moves the handle.",
+        "site.scenes.pendulum",
+        scene=True,
+    ),
+    Page("ball.html", "A ball on the paddle", "Juggle it.", "site.scenes.ball", scene=True),
+    Page("crank.html", "A slider-crank mechanism", "Turn a crank through its dead points.", "site.scenes.crank", scene=True),
+    Page(
+        "paddle.html",
+        "A real paddle, by its USB cable",
+        "In Chrome or Edge on a computer. The page is untried: it never ran with a real paddle.",
+        "widgets.board_page.page.paddle_page",
+    ),
+)
 
 
 def write_pages(folder):

@@ -139,6 +139,20 @@ def test_the_simulated_board_answers_in_lab_00(page, site):
     assert [line.split()[:1] for line in found] == [line.split()[:1] for line in expected]
 
 
+@pytest.mark.wide
+def test_a_scene_of_the_first_page_moves_at_once_without_python(page, site):
+    asked = []
+    page.on("request", lambda request: asked.append(request.url.removeprefix(site)))
+    page.goto(f"{site}/index.html")
+    page.get_by_role("link", name="A virtual wall").click()
+    x, y = grab(page, "canvas.hl-stage")
+    page.evaluate(COUNT)
+    page.mouse.move(x + 60, y, steps=10)
+    page.wait_for_function("() => window.shown.pictures > 10")
+    page.mouse.up()
+    assert {name for name in asked if not name.startswith("data:")} <= {"/index.html", "/wall.html", "/notebooks/favicon.ico"}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [390, 1280])

@@ -12,6 +12,7 @@ from hapticlab.errors import EngineMissingError
 from hapticlab.site import build, lite
 from hapticlab.site.build import Site, build_site
 from hapticlab.site.licences import parts, without_text
+from hapticlab.site.pages import PAGES
 
 
 def test_a_folder_that_holds_anything_else_is_refused_before_anything_is_written(tmp_path, capsys):
@@ -85,6 +86,7 @@ def test_a_site_has_the_labs_what_they_need_and_a_licence_text_for_every_file(tm
     assert built.size == sum(len(found[name]) for name in (*recorded, build.RECORD))
     assert [words.partition(",")[0] for words in said] == [
         f"Pyodide of {archive()}", "hapticlab and 0 packages that it needs", "JupyterLite with 11 labs",
+        f"{len(PAGES)} pages that need no Python",
     ]  # fmt: skip
     for lab in find_labs():
         for path in (lab.notebook, lab.path / "checks.py"):
@@ -96,8 +98,9 @@ def test_a_site_has_the_labs_what_they_need_and_a_licence_text_for_every_file(tm
 
 
 @pytest.mark.wide
-def test_the_kernel_loads_from_the_site_what_is_there(tmp_path, own_wheel):
+def test_the_kernel_loads_from_the_site_what_is_there(tmp_path, own_wheel, monkeypatch):
     """A site without Pyodide: packages that Pyodide lacks are in it, and everything else is asked for by name."""
+    monkeypatch.setattr(build, "write_pages", lambda folder: None)  # the test above has them
     build_site(tmp_path / "site", wheel=own_wheel, say=lambda words: None)
     settings = json.loads((tmp_path / "site" / "jupyter-lite.json").read_text())["jupyter-config-data"]["litePluginSettings"]
     kernel = settings[lite.KERNEL]

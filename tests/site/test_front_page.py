@@ -2,12 +2,13 @@
 
 import re
 from html.parser import HTMLParser
+from importlib import import_module
 
 import pytest
 
 from hapticlab.course.labs import find_labs
 from hapticlab.site.front_page import front_page
-from hapticlab.site.pages import Page
+from hapticlab.site.pages import PAGES, Page
 
 SCENE = Page("wall.html", "A wall & more", "Push it.", "site.none", scene=True)
 PADDLE = Page("paddle.html", "A real paddle", "By a cable.", "site.none")
@@ -81,7 +82,7 @@ def test_pages_that_are_added_are_linked_scenes_first_and_a_paddle_from_what_is_
     assert "scenes" not in page().ids and "paddle.html" not in page().links
     found = page(pages=(PADDLE, SCENE))
     assert found.links["wall.html"] == "A wall & morePush it." and {"scenes", "pages"} <= found.ids
-    assert found.said.index("Feel it at once") < found.said.index("Meet the paddle") < found.said.index("Also here")
+    assert found.said.index("Try a scene at once") < found.said.index("Meet the paddle") < found.said.index("Also here")
     assert "connects to one without Python" in found.said
     assert front_page(find_labs(), local=1, wheels=1, pages=(PADDLE,)).count('href="paddle.html"') == 2
 
@@ -90,3 +91,12 @@ def test_jupyterlite_finds_its_settings_in_the_page():
     """Without this element none of its pages starts: they read the settings of every folder above them."""
     text = front_page(find_labs(), local=1, wheels=1)
     assert '<script id="jupyter-config-data" type="application/json" data-jupyter-lite-root=".">{}</script>' in text
+
+
+def test_every_page_is_written_by_a_function_that_is_there_and_scenes_are_whole(tmp_path):
+    assert len({one.file for one in PAGES}) == len(PAGES) and any(one.file == "paddle.html" for one in PAGES)
+    for one in PAGES:
+        module, _, name = one.written_by.rpartition(".")
+        assert callable(getattr(import_module(f"hapticlab.{module}"), name))
+    wall = next(one for one in PAGES if one.scene).html()
+    assert wall.startswith("<!DOCTYPE html>") and len(wall) < 500_000 and not re.search(r"(?:src|href)\s*=\s*\"https?:", wall)

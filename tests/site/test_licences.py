@@ -76,7 +76,7 @@ def test_packages_and_fonts_without_a_text_are_named(site):
 
 
 def test_a_page_that_is_added_is_hapticlabs(site, monkeypatch):
-    (site / "paddle.html").write_text("page")
-    assert without_text(parts(site)) == ["paddle.html"]
-    monkeypatch.setattr(licences, "PAGES", (pages.Page("paddle.html", "A paddle", "", "site.none"),))
+    (site / "more.html").write_text("page")
+    assert without_text(parts(site)) == ["more.html"]
+    monkeypatch.setattr(licences, "PAGES", (pages.Page("more.html", "More", "", "site.none"),))
     assert write(site) == []
