@@ -27,7 +27,7 @@ SCRIPTS = (
 )  # fmt: skip
 #: time on view in the traces, of the clock [s]
 SECONDS = 4.0
-#: a view whose newest frame is so old [s] gets so many a second
+#: a view whose newest frame was so old [s] when it spoke gets so many a second
 BEHIND, SELDOM = 1.5, 4.0
 #: two clocks may drift apart so fast, and an age of a press be wrong by that of a heartbeat at most [s/s]
 DRIFT = 0.01
@@ -86,14 +86,13 @@ class Speaker:
         """Note which frame a view has, where its message says so."""
         number, kind, *values = struct.unpack(f"<{len(message) // 8}d", message)
         if KINDS[int(kind)] == "alive" and len(values) > 2 and values[2] > 0:
-            self._taken[number] = values[2], time.perf_counter()
+            self._taken[number] = self._sent - values[2], time.perf_counter()
         elif KINDS[int(kind)] == "gone":
             self._taken.pop(number, None)
 
     def _is_behind(self, now):
-        """Tell whether a view that speaks has not had the frames of the last while."""
-        lately = [newest for newest, heard in list(self._taken.values()) if now - heard < SILENCE]
-        return bool(lately) and self._sent - min(lately) > BEHIND
+        """Tell whether a view that spoke lately had then not had the frames of the last while."""
+        return any(late > BEHIND for late, heard in list(self._taken.values()) if now - heard < SILENCE)
 
     def forget(self):
         """Say everything with the next frame."""

@@ -66,7 +66,7 @@ class Session:
         self._views, self._turns, self._sink = {}, None, None
         self._said, self._wanted = deque(maxlen=1000), 0.0  # nobody may be there to do what is said
         self._heard = self._steady = -math.inf  # when a view was heard last, and since when without a gap
-        self._turned = math.inf  # when the last turn ended
+        self._turned = math.inf  # when the last turn ended in which somebody looked
         self._silent, self._end = None, ENDED  # since when, where silence ended it; and the words of the end
 
     # --- what a front end says, from whatever thread: stored, and done in the next turn
@@ -196,7 +196,6 @@ class Session:
     def _keep_turning(self):
         with self._door:
             if self._in_thread and self._turns is None:
-                self._turned = math.inf
                 self._turns = begin(self._run(), "hapticlab live view")
 
     def _run(self):
@@ -246,7 +245,8 @@ class Session:
                 self.close()
                 self.stage.end()
                 frame = self.stage.last_frame(self._end)
-            looks, self._turned = bool(self._views), self.clock()
+            looks = bool(self._views)
+            self._turned = self.clock() if looks else math.inf
         if frame is not None:
             self._show(frame)
         return looks

@@ -1,7 +1,7 @@
 """The browser's own Python has one thread: views, pictures, links and bars take turns with the cells there."""
 
 import pytest
-from in_pyodide import run_in_pyodide
+from in_pyodide import pytest_in_pyodide, run_in_pyodide
 
 pytestmark = pytest.mark.wide
 
@@ -102,6 +102,17 @@ with hl.connect("sim://hapkit?pace=real") as board:
 
 def test_a_simulated_board_runs_in_virtual_time_and_by_the_clock():
     assert run_in_pyodide(BOARD).splitlines() == ["300 None", "None", "100"]
+
+
+@pytest.mark.slow
+def test_the_tests_of_views_pictures_and_links_pass_there():
+    """All but those of threads, of the silence that ends a view elsewhere, and of the interpreter, which is not the fastest."""
+    names = "without_threads both turns threads nobody_keeps nobody_asks a_record_comes is_no_cell says_beforehand"
+    chosen = " and ".join(f"not {name}" for name in [*names.split(), "silence", "interpreter"])
+    widgets = "test_live", "test_live_board", "test_picture", "test_browser_view", "test_show", "blind/test_comparison"
+    files = [*(f"tests/widgets/{name}.py" for name in widgets), "tests/device/link/test_exchange.py"]
+    last = pytest_in_pyodide(*files, "-k", chosen, seconds=900)
+    assert int(last.split()[0]) > 200
 
 
 WORDS = """

@@ -98,6 +98,19 @@ def test_a_page_that_is_far_behind_gets_fewer_frames_and_no_fewer_rows(monkeypat
     assert sum(int(struct.unpack_from("<3d", data)[2]) for _, data in sent) == 301 * 17
 
 
+def test_a_page_whose_words_wait_gets_every_frame(monkeypatch):
+    """As in a browser's Python while a cell awaits: frames go out, and no word of the page comes in."""
+    now, sent = [50.0], []
+    monkeypatch.setattr("hapticlab.widgets.browser_view.time.perf_counter", lambda: now[0])
+    speaker = Speaker(lambda content, buffers: sent.append(now[0]))
+    for k in range(240):
+        now[0] += 1 / 60
+        if k < 60 and k % 24 == 23:
+            speaker.heard(message("alive", 1.0, 5.0) + struct.pack("<d", sent[-1]))
+        speaker.say(frame(rows=np.full((17, 8), k, np.float32)))
+    assert len(sent) == 240
+
+
 def run(begin, count=16):
     """A frame of a run of samples 1 ms apart; of none, a frame at rest then."""
     t = begin + np.arange(count) * 1e-3

@@ -774,6 +774,12 @@ def test_without_threads_a_cell_that_computed_is_told_and_its_time_is_not_made_u
     assert stage.session.source.ticks - before <= 110
     assert "A cell computed for 5.0 s: time stood still." in stage.session.status
     assert "fell behind" not in stage.session.status and stage.flags["running"]
+    stage.go(NOTE + 0.5)
+    stage.session.gone("page")
+    stage.session.turn()
+    stage.now += 5.0  # nobody looked, so that no turn was due
+    stage.open()
+    assert "A cell computed" not in stage.session.status
 
 
 def test_time_without_a_view_is_no_cell(one_thread):
