@@ -3,6 +3,7 @@
 import pytest
 
 import hapticlab as hl
+from hapticlab.library.sketch import Sketch
 
 PADDLE = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 STAGE, STATUS = "canvas.hl-stage", ".hl-status"
@@ -12,6 +13,13 @@ STANDS = f"() => {{ const now = ({NUMBERS})().slice(0, 2).join(), was = window.w
 TIME = "() => Number(document.querySelector('.hl-time').textContent.match(/[0-9.]+/)[0])"
 INJECTED = "() => document.head.append(Object.assign(document.createElement('script'), { textContent: 'window.stolen = 3' }))"
 HOSTILE = "</script><img src=x onerror='window.stolen = 1'><script>window.stolen = 2</script>"
+
+
+def labelled(axes, *, x):
+    """A handle, and a label that is hostile."""
+    sketch = Sketch(axes, -0.05, 0.05, -0.013, 0.013)
+    sketch.handle(x)
+    sketch.text((x, 0.0), HOSTILE)
 
 
 def open_file(browser, path):
@@ -27,10 +35,10 @@ def open_file(browser, path):
 
 @pytest.fixture(scope="module")
 def opened(browser, tmp_path_factory):
-    """A wall whose name is hostile."""
+    """A wall whose name is hostile, and a label in its picture."""
     wall = hl.wall()(k=300, x_o=0.01)
     path = tmp_path_factory.mktemp("shared") / "wall.html"
-    hl.share(hl.Scene(force=wall.force, name=HOSTILE)(**wall.values), PADDLE, path)
+    hl.share(hl.Scene(force=wall.force, name=HOSTILE)(**wall.values), PADDLE, path, picture=labelled)
     page, heard = open_file(browser, path)
     yield page, heard, path
     page.close()

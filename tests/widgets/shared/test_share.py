@@ -18,6 +18,12 @@ PADDLE = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)> \" ' & <!-- <style>"
 
 
+def labelled(axes, *, x):
+    """A picture whose label is hostile."""
+    axes.set(xlim=(-0.05, 0.05), ylim=(-0.01, 0.01))
+    axes.text(x, 0.0, HOSTILE)
+
+
 class Elements(HTMLParser):
     """The elements of a page with their attributes, and the text of each script."""
 
@@ -44,11 +50,11 @@ class Elements(HTMLParser):
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory):
-    """A page of a scene with a hostile name; names of parameters and channels are words, which Python checks."""
+    """A page of a scene with a hostile name and label; names of parameters and channels are words, which Python checks."""
     wall = hl.wall()(k=300, x_o=0.01)
     scene = hl.Scene(force=wall.force, name=HOSTILE)(**wall.values)
     path = tmp_path_factory.mktemp("shared") / "page.html"
-    shared = hl.share(scene, PADDLE, path)
+    shared = hl.share(scene, PADDLE, path, picture=labelled)
     return shared, path.read_text("utf-8")
 
 
@@ -58,7 +64,8 @@ def test_no_name_ends_an_element_or_begins_one(hostile):
     assert len(page.scripts) == 2 and "alert(1)" not in page.scripts[1]
     assert not [tag for tag, _ in page.found if tag == "img"]
     assert page.title == HOSTILE
-    assert json.loads(page.scripts[0])["scene"] == HOSTILE
+    told = json.loads(page.scripts[0])
+    assert told["scene"] == HOSTILE == told["picture"]["items"][0][2]["words"]
 
 
 def test_a_page_runs_its_own_script_alone_and_asks_for_nothing(hostile):
