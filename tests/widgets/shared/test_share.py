@@ -5,6 +5,7 @@ import getpass
 import hashlib
 import json
 import re
+from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -12,7 +13,8 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.errors import PaddleError, ParameterError
-from hapticlab.widgets.shared.page import PAGE_SCRIPTS, VIEW_SCRIPTS
+from hapticlab.widgets.shared.document import VIEW_SCRIPTS, read
+from hapticlab.widgets.shared.page import PAGE_SCRIPTS
 
 PADDLE = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)> \" ' & <!-- <style>"
@@ -106,6 +108,12 @@ def test_a_file_without_a_path_has_the_name_of_its_scene(tmp_path, monkeypatch):
 def test_every_script_of_a_page_is_in_it_once():
     assert len({*VIEW_SCRIPTS, *PAGE_SCRIPTS}) == len(VIEW_SCRIPTS) + len(PAGE_SCRIPTS)
     assert "kernel.js" not in VIEW_SCRIPTS and not [name for name in PAGE_SCRIPTS if "board" in name]
+
+
+def test_no_name_means_two_things_in_a_page():
+    """All scripts share one scope, where a second function of a name would replace the first without a word."""
+    names = re.findall(r"^(?:async )?(?:function\*?|class|const|let) (\w+)", read((*VIEW_SCRIPTS, *PAGE_SCRIPTS)), re.M)
+    assert len(names) > 200 and [name for name, many in Counter(names).items() if many > 1] == []
 
 
 def test_what_cannot_be_shared_is_refused(tmp_path):
