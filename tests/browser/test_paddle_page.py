@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from core_in_node import WEB
+from faults import FAULTS
 from page_bench import SILENT, request
 
 from hapticlab.device.link.messages import HOST_SILENCE_MS
@@ -21,25 +22,37 @@ FAKE = BROWSER.parents[2] / "tests" / "widgets" / "board" / "fake_serial.js"
 #: what plugs the board in: its store, its ticks by the clock, and the frame in which the paddle's page is
 AROUND = """async ([wasm, store, known]) => {
   const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))
-  const cores = await Promise.all([0, 1].map(() => Board.open(bytes(wasm), bytes(store))))
-  const begun = performance.now()
-  const now = () => (performance.now() - begun) / 1000
-  window.board = new FakeBoard(cores, known)
-  window.port = new FakePort(board)
+  const cores = await Promise.all(Array.from({ length: 24 }, () => Board.open(bytes(wasm), bytes(store))))
+  let begun = performance.now()
   window.frame = document.querySelector("iframe")
-  window.serial = new FakeSerial(port, () => frame.contentWindow.navigator.userActivation.isActive)
-  window.ticks = () => { // as many as are due by now
-    board.run(now())
+  window.board = new FakeBoard(cores, known)
+  window.serial = new FakeSerial(null, () => frame.contentWindow.navigator.userActivation.isActive)
+  // Make the ticks that are due. A computer that stalled makes up for few [ms]: in a burst nobody could say that he is there.
+  window.ticks = (most = 30) => {
+    begun = Math.max(begun, performance.now() - 1000 * board.time - most)
+    board.run((performance.now() - begun) / 1000)
     return board.ticks
   }
-  port.beforeTake = ticks
-  board.run(0.002)
-  for (const [name, values] of [["HELLO", [9]], ["HOME", [0]]]) board.core.receive(encodeFrame(name, 1, values, { session: 9 }))
-  board.core.transmit()
-  setInterval(ticks, 1)
+  // Plug a board in whose handle is at 0, as another host said.
+  window.plugIn = () => {
+    Object.assign(board, { sensor: (counts) => counts, beyond: false, hand: 0, x: 0, v: 0 })
+    board.reset()
+    window.port = serial.port = new FakePort(board)
+    port.beforeTake = () => ticks()
+    board.tick()
+    for (const [name, values] of [["HELLO", [9]], ["HOME", [0]]]) board.core.receive(encodeFrame(name, 1, values, { session: 9 }))
+    board.core.transmit()
+  }
+  window.fail = (name) => board.core.core.hl_host_fault(board.core.board, TABLES.faults[name][0])
+  plugIn()
+  setInterval(() => ticks(), 1)
   frame.src = "/paddle.html#start=1;k=900"
 }"""
 DOCUMENT, WINDOW = "frame.contentDocument", "frame.contentWindow"
+#: what a test made of the page's document and scene is as before
+SEEN = f"""delete {DOCUMENT}.hidden
+  {DOCUMENT}.dispatchEvent(new Event('visibilitychange'))
+  {DOCUMENT}.querySelector('#hl-scene').selectedIndex = 0"""
 IN_FRAME = "if (parent !== window) Object.defineProperty(navigator, 'serial', { get: () => parent.serial })"
 
 
@@ -87,27 +100,39 @@ class Bench:
         return self.frame.locator("#hl-words").inner_text()
 
     def status(self):
-        return self.frame.locator(".hl-status").inner_text()
+        status = self.frame.locator(".hl-status")
+        return status.inner_text() if status.count() else ""
 
     def button(self, name):
         return self.frame.locator(f".hl-{name}")
 
     def connect(self):
-        self.frame.locator("#hl-connect").click()
-        self.frame.locator(".hl-live").wait_for()
-        self.until("said().includes('Motor off')")
+        self.press(self.frame.locator("#hl-connect"), "said().includes('Motor off')")
+
+    def press(self, button, done):
+        """Press a button until something is so: a press that waited for a busy computer opens and starts nothing."""
+        from playwright.sync_api import TimeoutError
+
+        for _ in range(10):
+            button.click()
+            try:
+                return self.until(done, timeout=3000)
+            except TimeoutError:
+                if "a script opens no port" not in self.words() and "Start came late" not in self.status():
+                    break
+        raise AssertionError(self.status())
 
     def until(self, condition, timeout=30_000):
-        """Wait in the page around until a condition holds; ``said()`` is what the view says."""
-        said = "const said = () => frame.contentDocument?.querySelector('.hl-status')?.textContent ?? ''"
-        self.page.wait_for_function(f"() => {{ {said}; return {condition} }}", timeout=timeout)
+        """Wait in the page around until a condition holds; ``said()`` is what the view says, ``heard()`` all that is said."""
+        text = "(name) => frame.contentDocument?.querySelector(name)?.textContent ?? ''"
+        words = f"const text = {text}, said = () => text('.hl-status'), heard = () => said() + text('#hl-words')"
+        self.page.wait_for_function(f"() => {{ {words}; return {condition} }}", timeout=timeout)
 
     def start(self, hand=0.02):
         """Take the handle into the wall, and press Start."""
         self.page.evaluate("(hand) => { board.hand = hand }", hand)
         self.until("Math.abs(board.v) < 0.01 && board.x > 0.015")
-        self.button("run").click()
-        self.until("board.core.duty !== 0 && said().startsWith('Motor on')")
+        self.press(self.button("run"), "board.core.duty !== 0 && said().startsWith('Motor on')")
 
     def off_after(self, work, rest=250):
         """Do something, a text for the page around or a call; return the board's time until its motor was off [s].
@@ -123,6 +148,15 @@ class Bench:
         off = self.page.evaluate("board.offAfter(tick)")
         assert off is not None, self.status()
         return off
+
+    def restore(self):
+        """What a person does before the next Start: plug in a board, and connect again."""
+        self.page.evaluate(f"() => {{ {SEEN} }}")
+        if self.frame.locator("#hl-connect").inner_text() == "Disconnect":
+            self.frame.locator("#hl-connect").click()
+            self.until("heard().includes('Disconnected.')")
+        self.page.evaluate("plugIn()")
+        self.connect()
 
     def close(self):
         self.context.close()
@@ -187,49 +221,100 @@ def test_a_wall_is_felt_from_a_page_and_every_way_to_stop_stops_it(bench, tmp_pa
     assert "HOME" not in started(bench) and page.evaluate("serial.gotten") == 0
 
 
-HIDE = f"""Object.defineProperty({DOCUMENT}, 'hidden', {{ get: () => true }})
+HIDE = f"""Object.defineProperty({DOCUMENT}, 'hidden', {{ get: () => true, configurable: true }})
   {DOCUMENT}.dispatchEvent(new Event('visibilitychange'))"""
-LEAVE = f"""const gone = new Promise((done) => frame.addEventListener('load', done, {{ once: true }}))
-  {WINDOW}.addEventListener('pagehide', () => {{ window.tick = ticks() }}, true)
-  frame.src = '/gone'
-  await gone"""
 CHOOSE = f"""const scene = {DOCUMENT}.querySelector('#hl-scene')
   scene.selectedIndex = 1
   scene.dispatchEvent(new Event('change'))"""
-THROW = "setTimeout(() => { parent.tick = parent.ticks(); throw new Error('a mistake') })"
-#: what happens to a page whose motor is on, in the page around or by a call; the longest time until it is off by the board's
-#: ticks [s]; and words of the page then, None where it is gone
+NOISE = "port.onWay = port.onWire = (bytes) => bytes.map((byte, k) => (byte * 37 + k * 11 + 5) & 255)"
+FREEZE = "const counts = Math.round(board.x / board.known.metres_per_count); board.sensor = () => counts"
+#: what happens to a page whose motor is on; the longest time until it is off by the board's ticks [s]; and words of the page
 HAPPENS = {
-    "hidden": (HIDE, 0.005, "The page was hidden"),
-    "frozen": (f"{DOCUMENT}.dispatchEvent(new Event('freeze'))", 0.005, "The page was hidden"),
-    "left": (LEAVE, 0.005, None),
-    "blocked": ("for (const until = performance.now() + 300; performance.now() < until; ) {}", SILENT, "this page was stopped"),
-    "error": (lambda bench: bench.inside.evaluate(THROW), 0.005, "a mistake"),
-    "rejection": (f"{WINDOW}.Promise.reject(new Error('a mistake'))", 0.03, "a mistake"),
-    "unplugged": ("port.unplug()", SILENT, "disconnected during use"),
-    "scene chosen": (CHOOSE, 0.005, "Motor off"),
-    "handle thrown": ("board.v = 4", 0.003, "OVER_SPEED"),
+    "page hidden": (HIDE, 0.005, "The page was hidden"),
+    "page frozen by the browser": (f"{DOCUMENT}.dispatchEvent(new Event('freeze'))", 0.005, "The page was hidden"),
+    "page blocked": (
+        "for (const until = performance.now() + 300; performance.now() < until; ) {} ticks(300)",
+        SILENT,
+        "this page was stopped",
+    ),
+    "another scene chosen": (CHOOSE, 0.005, "Motor off"),
+    "over-speed": ("board.v = 4", FAULTS["over-speed"].within, "OVER_SPEED"),
+    "over-travel": ("board.beyond = true; board.x = board.hand = 0.056", FAULTS["over-travel"].within, "OVER_TRAVEL"),
+    "sensor's wire": ("fail('SENSOR')", FAULTS["sensor's wire"].within, "SENSOR"),
+    "sensor frozen": (FREEZE, FAULTS["sensor frozen"].within, "FROZEN"),
+    "program damaged": ("board.core.damageProgram(40, 1)", FAULTS["program damaged in memory"].within, "BAD_PROGRAM"),
+    "stack overflow": ("fail('MEMORY')", FAULTS["stack overflow"].within, "MEMORY"),
+    "another program": ("board.core.receive(encodeFrame('HELLO', 1, [77]))", 0.002, "Another program connected"),
     "board reset": ("board.reset()", 0.002, "was reset"),
+    "unplugged": ("port.unplug()", SILENT, "disconnected during use"),
+    "port closed": ("port.onWay = () => new Uint8Array(0)", SILENT, "did not answer"),
+    "device accepts no data": ("port.stuck = true", SILENT, "accepted no data"),
+    "garbage": (NOISE, SILENT, "did not answer"),
 }
+
+
+@pytest.fixture(scope="module")
+def happened(browser, html, asked):
+    """(time until the motor was off, new starts) of all that happens to one page: each time Start is pressed again."""
+    bench, found = Bench(browser, html, asked), {}
+    bench.connect()
+    for name, (work, within, words) in HAPPENS.items():
+        bench.start()
+        starts = started(bench).count("START")
+        off = bench.off_after(work, rest=round(1000 * within) + 150)
+        bench.until(f"heard().includes({json.dumps(words)})")
+        found[name] = off, started(bench).count("START") - starts  # nothing starts again by itself
+        bench.restore()
+    bench.close()
+    return found
 
 
 @pytest.mark.wide
 @pytest.mark.parametrize("name", HAPPENS)
-def test_the_motor_goes_off_with_the_page(bench, name, record_property):
-    work, within, words = HAPPENS[name]
-    bench.connect()
-    bench.start()
-    off = bench.off_after(work, 400 if name != "board reset" else 1600)
+def test_the_motor_goes_off_in_the_stated_time(happened, name, record_property):
+    off, starts = happened[name]
+    within = HAPPENS[name][1]
     record_property("motor_off_after_s", off)
     print(f"{name}: motor off {1e3 * off:.0f} ms after it, stated {1e3 * within:.0f} ms")
-    assert off <= within + 1e-9
-    if words:
-        bench.until(f"(said() + frame.contentDocument.querySelector('#hl-words').textContent).includes({json.dumps(words)})")
-    starts = started(bench).count("START")
-    bench.page.evaluate("board.hand = 0")
-    bench.until(f"board.ticks > {bench.page.evaluate('board.ticks')} + 300")
-    assert started(bench).count("START") == starts == 1  # nothing starts again by itself
-    assert HOST_SILENCE_MS == 100
+    assert 0 <= off <= within + 1e-9 and starts == 0
+
+
+#: a board that says hello by other tables
+OTHER = """() => {
+  port.onWire = (bytes) => {
+    const frame = decodeFrame(bytes.slice(0, bytes.indexOf(0)))
+    if (frame?.message !== "WELCOME") return bytes
+    const { table, ...rest } = fieldsOf(frame)
+    return encodeFrame("WELCOME", frame.sequence, [table ^ 1, ...Object.values(rest)])
+  }
+}"""
+LEAVE = f"""const gone = new Promise((done) => frame.addEventListener('load', done, {{ once: true }}))
+  {WINDOW}.addEventListener('pagehide', () => {{ window.tick = ticks() }}, true)
+  frame.src = '/gone'
+  await gone"""
+THROW = "setTimeout(() => { parent.tick = parent.ticks(); throw new Error('a mistake') })"
+
+
+@pytest.mark.wide
+@pytest.mark.parametrize("name", ["left", "error"])
+def test_a_page_that_is_left_or_broken_says_stop(bench, name):
+    bench.connect()
+    bench.start()
+    off = bench.off_after(LEAVE if name == "left" else lambda bench: bench.inside.evaluate(THROW))
+    print(f"page {name}: motor off {1e3 * off:.0f} ms after it")
+    assert off <= 0.005
+    if name == "error":
+        bench.until("heard().includes('a mistake')")
+        assert bench.frame.locator("#hl-connect").is_disabled()
+    assert started(bench).count("START") == 1 and HOST_SILENCE_MS == 100
+
+
+@pytest.mark.wide
+def test_a_board_of_another_version_is_asked_for_nothing_more(bench):
+    bench.page.evaluate(OTHER)
+    bench.frame.locator("#hl-connect").click()
+    bench.until("heard().includes('a different version of the messages') && port.closed")
+    assert set(started(bench)) == {"HELLO"}
 
 
 @pytest.mark.wide

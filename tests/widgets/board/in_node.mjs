@@ -173,6 +173,20 @@ const scenarios = {
     }
     return { found }
   },
+  async "stop while it starts again"() {
+    const b = await (await bench()).running()
+    const found = []
+    for (let k = 0; k < 24; k += 2) {
+      b.source.press("restart")
+      await b.pass(0.001 * k)
+      b.source.press("pause")
+      const tick = b.board.ticks
+      await b.pass(0.1)
+      found.push([b.board.offAfter(tick), b.source.running, b.said().at(-1)])
+      await b.press("start", 0.1)
+    }
+    return { found }
+  },
   async "press Stop"() {
     const b = await (await bench()).running()
     return b.after(() => b.source.press("pause"))

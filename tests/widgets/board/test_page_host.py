@@ -65,8 +65,9 @@ def test_nothing_starts_but_by_a_fresh_press(found):
     assert "Start came late" in seen["late"]
 
 
-def test_stop_holds_at_any_moment_of_a_start(found):
-    for off, running, last in found["stop while it starts"]["found"]:
+@pytest.mark.parametrize("name", ["stop while it starts", "stop while it starts again"])
+def test_stop_holds_at_any_moment_of_a_start(found, name):
+    for off, running, last in found[name]["found"]:
         assert (off, running) == (0, False) and last == "STATUS"
 
 

@@ -293,6 +293,7 @@ class Exchange {
   // Look after the heartbeats, a few times for each; note for how long nobody did.
   look() {
     this.beat()
+    if (this.broken) return
     this.stopLooking = this.clock.after(TABLES.heartbeat / 4, () => this.look())
   }
 

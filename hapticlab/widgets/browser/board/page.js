@@ -37,9 +37,11 @@ class PaddlePage {
   // Switch the motor off.
   stop(words) {
     if (!this.paddle || this.paddle.exchange.broken) return
-    if (!this.source?.running) return this.paddle.giveUp() // whatever is under way
-    this.source.press("pause")
-    if (words) this.source.say(words)
+    const { source } = this
+    if (!source) return this.paddle.giveUp() // whatever is under way
+    if (words && source.running) source.say(words)
+    source.press("pause")
+    return undefined
   }
 
   // The page is left: STOP goes out if anything still does; a board that hears nothing stops by itself.
@@ -51,7 +53,7 @@ class PaddlePage {
   fail(words = "unknown") {
     if (String(words).startsWith("ResizeObserver loop")) return // the browser's word for a picture that comes a frame later
     const { paddle, source } = this
-    this.paddle = null
+    this.paddle = this.source = null
     paddle?.giveUp()
     paddle?.close()
     this.say(`This page has an error, so the motor was switched off: ${words}. Load the page again.`)

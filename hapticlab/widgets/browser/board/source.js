@@ -14,7 +14,7 @@ class BoardSource {
     Object.assign(this, { told, about: told.about, words, paddle, picture, touching, keep: save, gesture, clock })
     this.numbers = told.parameters.map((parameter) => parameter.value)
     this.period = told.T * told.every
-    Object.assign(this, { running: false, busy: false, homed: true, fault: "", recorder: null, player: null, log: null, moves: new Map() })
+    Object.assign(this, { running: false, busy: false, stops: 0, homed: true, fault: "", recorder: null, player: null, log: null, moves: new Map() })
     Object.assign(this, { note: "", noteUntil: -1, noticed: {}, last: { x: 0, F: 0 }, nextFrame: -1, nextLook: -1, said: {}, status: "" })
     this.rows = this.freshRows(this.period)
   }
@@ -57,9 +57,11 @@ class BoardSource {
     if (this.clock.now() - pressed > TIMELY) return this.say(CAME_LATE)
     if (this.busy) return undefined
     this.busy = true
+    const { stops } = this
     try {
       this.endReplay()
-      if (this.running) await this.halt()
+      if (this.running) await this.switchOff()
+      if (stops !== this.stops) return undefined // Stop was pressed meanwhile
       const found = await this.paddle.start(this.told, this.numbers, pressed)
       this.begin()
       for (const sentence of found) this.say(sentence)
@@ -70,6 +72,7 @@ class BoardSource {
       this.busy = false
       this.look()
     }
+    return undefined
   }
 
   begin() {
@@ -78,8 +81,14 @@ class BoardSource {
     if (this.recorder) this.record() // one that waited begins
   }
 
-  // Switch the motor off, at once; then ask the board whether it is, and why it was before.
-  async halt() {
+  // Stop: switch the motor off at once, and give up a start that is under way.
+  halt() {
+    this.stops += 1
+    return this.switchOff()
+  }
+
+  // Switch the motor off; then ask the board whether it is, and why it was before.
+  async switchOff() {
     const ran = this.running
     this.running = false
     this.endReplay()
