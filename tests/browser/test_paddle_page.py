@@ -175,7 +175,7 @@ def started(bench):
 
 
 @pytest.mark.wide
-def test_a_wall_is_felt_from_a_page_and_every_way_to_stop_stops_it(bench, tmp_path):
+def test_a_wall_is_felt_and_every_way_to_stop_stops_it(bench, tmp_path):
     page, frame = bench.page, bench.frame
     page.evaluate("frame.contentWindow.postMessage({ start: true, connect: true }, '*')")
     page.evaluate("frame.contentDocument.querySelector('#hl-connect').click()")  # a script's press is not a person's
