@@ -20,7 +20,7 @@ LITE = {
     "bootstrap.js", "config-utils.js", "icon-120x120.png", "icon-512x512.png", "jupyter-lite.ipynb", "jupyter-lite.json",
     "jupyterlite.schema.v0.json", "manifest.webmanifest", "package.json", "service-worker.js",
 }  # fmt: skip
-OWN = {"index.html", ".nojekyll", "pypi/all.json", "hapticlab-site.json"}
+OWN = {"index.html", ".nojekyll", "hapticlab-site.json", "overrides.json", "pypi/all.json"}
 #: part of a file's name -> the fonts that it is of, and the package of JavaScript that brings their licence
 FONTS = {"MathJax_": ("Fonts of MathJax", "mathjax-full"), "fa-": ("Font Awesome", "@fortawesome/fontawesome-free")}
 #: beginnings of the names of packages that bring no text -> the text that they are under
