@@ -92,6 +92,19 @@ def test_samples_of_mechanisms_and_contacts_are_those_of_python():
     assert set(compare(MORE).values()) == {None}
 
 
+def test_a_hand_that_aims_as_in_a_run_feels_the_same():
+    """The claim of docs/sharing.md, without Stepping between: the forces of ``paddle.run``."""
+    aiming = replace(HAPKIT, hand=hl.Hand("pinch", intent=hl.people.MinimumJerk(end=0.02, duration=0.3)))
+    log = aiming.run(DAMPED, duration=0.4, progress=False)
+    told = page_data(Stage(HAPKIT, DAMPED, clock=lambda: 0.0))
+    intent = aiming.hand.samples(len(log), aiming.T)
+    (answer,) = in_node([("steps", {"told": told, "plan": [{"intent": text(intent)}]})])
+    (found,) = answer["found"]
+    assert log.F.max() > 0.5
+    for name in log.columns:
+        assert array(found[name]).tobytes() == np.asarray(getattr(log, name), float).tobytes(), name
+
+
 def test_a_noisy_sensor_and_hand_have_the_noise_that_the_paddle_says():
     """Another generator's than Python's: with the noise of both, the same size, and none is drawn of a hand that is gone."""
     paddle = replace(PLAIN, noise=2e-5, hand=hl.Hand("pinch", push_noise=0.3), seed=4)
