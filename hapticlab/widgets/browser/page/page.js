@@ -1,7 +1,6 @@
 // What stands around the view in a shared file: values in the address, buttons for the whole page, the code to copy, and files
 // that a visitor keeps.
 
-const SLOW_MOTION = "slow-motion"
 const WRITTEN_AFTER = 200 // [ms] after a change: a slider that is dragged writes once
 const MOST_TRACES = 4 // more would be too low to read
 const PAGE_BUTTONS = {
@@ -16,7 +15,8 @@ class Page {
   constructor(source, view, told) {
     Object.assign(this, { source, view, told })
     const { traces } = told.about
-    const named = { flags: [SLOW_MOTION], traces: traces.map((each) => each.name) }
+    this.pace = told.about.speed === told.about.slow ? "real-time" : "slow-motion" // what M changes it to
+    const named = { flags: [this.pace], traces: traces.map((each) => each.name) }
     this.words = { parameters: told.parameters, fixed: told.fixed, units: told.metric, ...named }
     this.own = traces.filter((each) => each.open).map((each) => each.name)
     this.said = document.getElementById("hl-told")
@@ -47,7 +47,7 @@ class Page {
       else own[name] = values[name] ?? own[name]
     }
     const refused = this.source.set(own)
-    if (flags.includes(SLOW_MOTION) !== this.isSlow) this.source.press("slow")
+    if (flags.includes(this.pace) !== this.hasOtherPace) this.source.press("slow")
     this.showTraces(traces?.length ? traces.slice(0, MOST_TRACES) : this.own)
     this.tell(refused ? [...problems, refused] : problems)
   }
@@ -59,8 +59,8 @@ class Page {
     numbers.chosen(numbers.open)
   }
 
-  get isSlow() {
-    return this.source.motion.speed === this.told.about.slow && this.told.about.speed !== this.told.about.slow
+  get hasOtherPace() {
+    return this.source.motion.speed !== this.told.about.speed
   }
 
   tell(problems) {
@@ -77,7 +77,7 @@ class Page {
     const values = this.source.values
     const { open } = this.view.numbers
     const others = [...open].sort().join() !== [...this.own].sort().join() && open.length > 0
-    const address = writeAddress(values, this.isSlow ? [SLOW_MOTION] : [], this.words, others ? open : null)
+    const address = writeAddress(values, this.hasOtherPace ? [this.pace] : [], this.words, others ? open : null)
     if (this.code) this.code.textContent = codeWith(values, this.told)
     try {
       if (address !== location.hash) history.replaceState(null, "", location.href.split("#")[0] + address)
