@@ -28,7 +28,7 @@ def written(log, path):
 def test_a_record_from_a_page_is_the_record_that_python_saves(tmp_path):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, force_max=1.0, counts_per_metre=20_000, hand=hl.Hand("pinch", push=2.0))
     scene = replace(hl.library.mass_spring_damper(), name='ein "Körper" \U0001f9f2')
-    log = paddle.run(scene, duration=0.3)
+    log = replace(paddle.run(scene, duration=0.3), changes=((0.1, {"k": 250.0}),), fault="tick 7: F was 'not finite'")
     assert log.saturated.any() and not log.saturated.all()
     page, own = written(log, tmp_path / "page.npz"), log.save(tmp_path / "own.npz")
     read, expected = hl.records.Telemetry.load(page), hl.records.Telemetry.load(own)

@@ -2,6 +2,7 @@
 // that a visitor keeps.
 
 const WRITTEN_AFTER = 200 // [ms] after a change: a slider that is dragged writes once
+const MOST_TOLD = 3 // sentences on an address
 const MOST_TRACES = 4 // more would be too low to read
 const PAGE_BUTTONS = {
   step: { key: "N", word: "Next tick", title: "pause, and advance by one sampling period" },
@@ -64,8 +65,9 @@ class Page {
   }
 
   tell(problems) {
-    this.said.replaceChildren(...problems.slice(0, 3).map((words) => make("span", {}, [words])))
-    if (problems.length > 3) this.said.append(make("span", {}, [`${problems.length - 3} more parts of the address are not understood.`]))
+    const more = problems.length - MOST_TOLD
+    const last = more > 0 ? [`${more} more part${more > 1 ? "s" : ""} of the address cannot be used.`] : []
+    this.said.replaceChildren(...[...problems.slice(0, MOST_TOLD), ...last].map((words) => make("span", {}, [words])))
   }
 
   changed() {
