@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 import pytest
+from axe import findings
 from core_in_node import WEB
 from faults import FAULTS
 from page_bench import SILENT, request
@@ -199,6 +200,7 @@ def test_a_wall_is_felt_and_every_way_to_stop_stops_it(bench, tmp_path):
     entry.press("Enter")
     bench.until("Math.abs(8 * board.core.duty + 150 * (board.x - 0.01)) < 0.03")
     page.screenshot(path=Path(os.environ.get("HAPTICLAB_ARTIFACTS", tmp_path), "paddle_page.png"))
+    assert findings(bench.inside) == []
     heard = page.evaluate("port.sent.length")
     bench.until(f"port.sent.length > {heard} + 8")  # heartbeats go on by themselves
 

@@ -30,13 +30,14 @@ PERIODS = {"uno": (1e-3, 2e-3), "pico": (1e-3,), "host": (1e-3,)}
 
 @dataclass(frozen=True)
 class Choice:
-    """A scene to choose: with values, its sliders, and options of hapticlab.compile that are tried in turn, by board."""
+    """A scene to choose: with values, its sliders, options of hapticlab.compile to try, by board, and a sentence."""
 
     name: str
     title: str
     scene: Scene
     sliders: dict | None = None
     options: dict = field(default_factory=lambda: {board: [{"T": T} for T in periods] for board, periods in PERIODS.items()})
+    about: str = ""
 
 
 def choices():
@@ -65,7 +66,17 @@ def labs():
 
 def library():
     """The scenes of the library; which of them a board carries is asked of its costs."""
-    return [Choice(name, entry.title, entry.scene(), None, _library_options(entry)) for name, entry in CATALOGUE.items()]
+    return [
+        Choice(
+            name,
+            name.replace("_", " ").capitalize(),
+            entry.scene(),
+            None,
+            _library_options(entry),
+            f"{entry.title.rstrip('.')}. ",
+        )
+        for name, entry in CATALOGUE.items()
+    ]
 
 
 def _library_options(entry):
@@ -90,7 +101,7 @@ def scene_data(choice, boards):
     """Return a scene with its program for each board that carries it, or None where none does."""
     found = {board: told for board in boards for told in [_on_board(choice, board)] if told}
     where = " and ".join(BOARDS[board].flashing.called if BOARDS[board].flashing else board for board in found)
-    return found and {"name": choice.name, "title": choice.title, "about": f"It fits {where}.", "boards": found}
+    return found and {"name": choice.name, "title": choice.title, "about": f"{choice.about}It fits {where}.", "boards": found}
 
 
 def _on_board(choice, board):

@@ -176,7 +176,7 @@ const scenarios = {
   async "stop while it starts again"() {
     const b = await (await bench()).running()
     const found = []
-    for (let k = 0; k < 24; k += 2) {
+    for (let k = 0; k < 12; k += 2) {
       b.source.press("restart")
       await b.pass(0.001 * k)
       b.source.press("pause")
@@ -204,7 +204,7 @@ const scenarios = {
   },
   async "nobody looks"() {
     const b = await (await bench()).running()
-    return b.after(() => (b.source.turn = () => {}), 1.6)
+    return b.after(() => (b.source.turn = () => {}), 1.25)
   },
   async "port closed"() {
     const b = await (await bench()).running()
@@ -230,15 +230,15 @@ const scenarios = {
     return b.after(() => {
       b.port.onWay = noise
       b.port.onWire = noise
-    }, 3)
+    }, 2.6)
   },
   async "board reset"() {
     const b = await (await bench()).running()
-    return b.after(() => b.board.reset(), 2)
+    return b.after(() => b.board.reset(), 1.3)
   },
   async "another program"() {
     const b = await (await bench()).running()
-    return b.after(() => b.board.core.receive(b.page.encodeFrame("HELLO", 1, [77])), 2)
+    return b.after(() => b.board.core.receive(b.page.encodeFrame("HELLO", 1, [77])), 1.3)
   },
   async "over-speed"() {
     const b = await (await bench()).running()
@@ -261,13 +261,13 @@ const scenarios = {
     return b.after(() => {
       const counts = Math.round(b.board.x / b.board.known.metres_per_count)
       b.board.sensor = () => counts
-    }, 1.5)
+    }, 1.3)
   },
   async "heat"() {
     const b = await bench({ store: asked.stores.hot })
     b.board.hand = 0
     await b.running(0.025)
-    return b.after(() => {}, 2)
+    return b.after(() => {}, 1.2)
   },
   async "division by zero"() {
     const b = await bench({ scene: "quotient" })

@@ -4,6 +4,7 @@
 const TIMELY = 0.5 // [s] that a press counts which starts a motor
 const CAME_LATE = "Start came late, so the motor stays off. Press Start again"
 const RESTS = 0.25 // [s] between two pictures, and two looks at the board, while the motor is off
+const WORDS = 0.25 // [s] after which words may change
 const SAID = 6.0 // [s] that a note stays
 
 class BoardSource {
@@ -15,7 +16,7 @@ class BoardSource {
     this.numbers = told.parameters.map((parameter) => parameter.value)
     this.period = told.T * told.every
     Object.assign(this, { running: false, busy: false, stops: 0, homed: true, fault: "", recorder: null, player: null, log: null, moves: new Map() })
-    Object.assign(this, { note: "", noteUntil: -1, noticed: {}, last: { x: 0, F: 0 }, nextFrame: -1, nextLook: -1, said: {}, status: "" })
+    Object.assign(this, { note: "", noteUntil: -1, noticed: {}, last: { x: 0, F: 0 }, nextFrame: -1, nextLook: -1, nextWords: -1, status: "", vibrates: false })
     this.rows = this.freshRows(this.period)
   }
 
@@ -252,9 +253,12 @@ class BoardSource {
     const { running, player, recorder, log } = this
     const flags = { running, motor: running, recording: Boolean(recorder), replaying: Boolean(player), held: true, speed: 1 }
     Object.assign(flags, { recorded: Boolean(log || recorder?.samples), T: this.rows.T, apart: rowsApart(this.rows.T) })
-    const vibrates = running && !player ? this.vibration() : ""
-    flags.vibrates = Boolean(vibrates)
-    return { flags, status: this.statusWords(now, vibrates), values: this.values }
+    if (now >= this.nextWords) {
+      this.nextWords = now + WORDS
+      const words = running && !player ? this.vibration() : ""
+      Object.assign(this, { vibrates: Boolean(words), status: this.statusWords(now, words) })
+    }
+    return { flags: { ...flags, vibrates: this.vibrates }, status: this.status, values: this.values }
   }
 
   vibration() {
@@ -302,7 +306,7 @@ class BoardSource {
 
   // Have the next turn of the screen show everything.
   look() {
-    this.nextFrame = -1
+    this.nextFrame = this.nextWords = -1
   }
 }
 
