@@ -52,6 +52,7 @@ def test_every_frame_and_duty_is_that_of_this_computer():
     assert [(s["tick"], s["flags"], s["values"]) for s in answer["samples"]] == sent and len(sent) > 390
 
 
+@pytest.mark.wide  # the Uno's and the Pico's images always
 def test_the_committed_module_is_what_the_sources_give(tmp_path):
     try:
         built = build_image.build_web(tmp_path)

@@ -105,6 +105,7 @@ def test_solved_lab_earns_everything(folder, record_property):
     assert found.earned == lab.points
 
 
+@pytest.mark.always("00_*", "02_*", "04_*", "05_*", "07_*", "08_*", "09_*", "10_*")
 def test_wrong_answers_earn_nothing_and_are_taught(folder):
     lab = folder.lab()
     hidden = hidden_cases(lab, INSTRUCTOR / folder.name)
@@ -123,6 +124,7 @@ def test_wrong_answers_earn_nothing_and_are_taught(folder):
             assert found.earned == 0, (name, kind)
 
 
+@pytest.mark.always("00_*", "02_*", "04_*", "05_*", "07_*", "08_*", "09_*", "10_*")
 def test_what_students_write_is_taught(folder):
     lab, hidden = folder.lab(), hidden_cases(folder.lab(), INSTRUCTOR / folder.name)
     tried = written_wrong(folder)["WRONG"]

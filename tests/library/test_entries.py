@@ -66,6 +66,7 @@ def test_it_compiles_runs_and_opens_live_as_it_comes(entry):
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=names)
+@pytest.mark.always("mass_*", "two_*", "gears", "rolling", "stick_slip", "detents", "texture", "buckling_beam")
 def test_it_runs_on_the_nominal_paddle_within_its_travel_and_force(entry):
     hand = hl.Hand(m=0.02, b=1, k=150, intent=lambda t: 0.025 * np.sin(2 * np.pi * t))
     paddle = hl.SimulatedPaddle.from_profile(NOMINAL, T=entry.options["T"], force_max=None, hand=hand)
@@ -121,6 +122,7 @@ def journeys(T, ticks):
 
 
 @pytest.mark.parametrize("entry", STATES, ids=names)
+@pytest.mark.always("mass_*", "two_*", "tuned_*", "cart_pole", "gears", "rolling")
 def test_led_anywhere_it_gives_back_no_more_than_its_damping_takes(entry):
     # cheapest motion through the samples: the paddle's damper takes b D^2/T a period, walls.md 3.1 is Colgate's condition
     T = entry.options["T"]

@@ -299,6 +299,7 @@ def test_names_that_are_never_bound_need_nothing():
 
 
 @pytest.mark.parametrize("folder", find_labs(), ids=lambda folder: folder.name)
+@pytest.mark.always("02_*", "03_*", "09_*")
 def test_the_slice_of_a_solved_lab_earns_full_marks(folder, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     lab, cells = folder.lab(), code_of(solved_notebook(folder, ANSWERS / folder.name))
