@@ -189,13 +189,13 @@ def main():
             size, alone = core_of(program)
             runs = f"{alone:.2f} us" if alone else "refused"
             choices.append(f"| {name} | {both[0]:,} + {both[1]:,} | {tick:.2f} us | {size:,} | {runs} |")
-    texts = {"shared files": table(HEADS[0], files), "what a page runs": table(HEADS[1], choices)}
+    load = ", ".join(f"{each:.1f}" for each in os.getloadavg()) if hasattr(os, "getloadavg") else "unknown"
+    said = f"\n{time.strftime('%F')}; {os.cpu_count()} processors; load of 1, 5 and 15 minutes at the end: {load}.\n"
+    texts = {"shared files": table(HEADS[0], files) + said, "what a page runs": table(HEADS[1], choices)}
     for name, text in texts.items():
         print(text)
         if given.write:
             write_block(PAGE, name, text)
-    load = ", ".join(f"{each:.1f}" for each in os.getloadavg()) if hasattr(os, "getloadavg") else "unknown"
-    print(f"load of this computer at the end, of 1, 5 and 15 minutes: {load}; {os.cpu_count()} processors; {time.strftime('%F')}")
 
 
 if __name__ == "__main__":

@@ -85,8 +85,6 @@ def in_python(paddle, scene, script):
         if not seen:
             continue
         stage.obey(queue)
-        if script.get(k):
-            stage.look()
         wanted, stage.caught = (wanted if stage.caught is None else stage.caught), None
         rows = stage.advance(wanted)
         wanted, stage.caught = (wanted if stage.caught is None else stage.caught), None

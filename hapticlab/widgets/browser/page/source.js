@@ -43,9 +43,9 @@ class PageSource {
 
   tell(what, ...values) {
     if (what === "intend") this.wanted = values[0]
-    else if (what === "hold") this.motion.hold(Boolean(values[0]))
-    else if (what === "move") this.set({ [this.about.parameters[values[0]].name]: values[1] })
-    this.look()
+    else this.look()
+    if (what === "hold") this.motion.hold(Boolean(values[0]))
+    if (what === "move") this.set({ [this.about.parameters[values[0]].name]: values[1] })
   }
 
   // Do what a button asks for, by its name in ``about.presses``.
