@@ -7,14 +7,14 @@ from ...library.entries import CATALOGUE
 from .equations import equations
 from .scene_code import library_name
 
-NO_CODE = (
-    "This scene is not written out as Python here, since it holds contacts, shapes or models of its author's own. Ask the author "
-    "for the Python file."
-)
+NO_CODE = "The Python of this scene is not included. Ask the author of the page for it."
 ABOUT = (
-    "This file holds all that it needs: it asks for no network, keeps nothing about you and never opens a port, so no motor can "
-    "move. The scene runs on a simulated paddle. What you change stands in the address of the page, in the words of "
-    "<code>hapticlab run --set</code>: a link with <code>#k=150N/m;x_o=10mm</code> after its name opens with these values."
+    "This file contains everything that it needs. It uses no network, stores nothing about you and never opens a port, so it "
+    "cannot move a motor. The scene runs on a simulated paddle."
+)
+CHANGES = (
+    "The values that you change are kept in the address of the page, in the notation of <code>hapticlab run --set</code>. If you "
+    "add <code>#{example}</code> to a link to the page, it opens with this value."
 )
 
 
@@ -59,7 +59,7 @@ def fixed(scene, source):
     return found
 
 
-def body(scene, code):
+def body(scene, code, fixed):
     """Return the HTML below the view.
 
     Parameters
@@ -67,6 +67,8 @@ def body(scene, code):
     scene : Scene
     code : (str, str) or None
         Python before and after a visitor's values; None where the author gives none.
+    fixed : collection of str
+        Parameters that a page cannot change.
     """
     lines = "".join(f"<p>{line}</p>" for line in equations(scene))
     return f"""<section class="hl-part" aria-labelledby="hl-equations">
@@ -79,9 +81,18 @@ def body(scene, code):
 </section>
 <section class="hl-part" aria-labelledby="hl-about">
 <h2 id="hl-about">About this file</h2>
-<p>{ABOUT}</p>
+<p>{ABOUT}{_changes(scene, fixed)}</p>
 </section>
 """
+
+
+def _changes(scene, fixed):
+    """Say how an address carries values, with one of the scene's own, if it has any that can be changed."""
+    name = next((name for name in scene.values if name not in fixed), None)
+    if name is None:
+        return ""
+    unit = scene.parameters[name].unit
+    return " " + CHANGES.format(example=f"{name}={scene.values[name]:g}{'' if unit == '1' else unit}")
 
 
 def _code(code):

@@ -107,7 +107,7 @@ def share(
     python = _code(code, scene, paddle, changed | compile_options)
     data = page_data(stage) | {"metric": units(), "code": python, "fixed": fixed(scene, stage.source)}
     picture = still(stage.drawn(None), stage.picture.box, f"{scene.name}: the first picture of the scene")
-    text = page(data, lead(scene), body(scene, python), picture)
+    text = page(data, lead(scene), body(scene, python, data["fixed"]), picture)
     path = Path(_file_name(scene.name) if path is None else path)
     path.write_text(text, "utf-8")
     return SharedFile(path, len(text.encode()), stage.source.program.name)
