@@ -113,7 +113,10 @@ class Page {
   }
 
   showButtons() {
-    const { replaying, recorded } = this.view.flags
+    const { flags } = this.view
+    if (flags === this.shownFlags) return
+    this.shownFlags = flags
+    const { replaying, recorded } = flags
     const off = { step: replaying, table: !recorded, reset: false }
     for (const [name, button] of Object.entries(this.buttons)) button.setAttribute("aria-disabled", Boolean(off[name]))
   }
