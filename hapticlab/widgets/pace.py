@@ -1,5 +1,6 @@
-"""Ticks that are due by the clock, counted from where it began so that nothing drifts."""
+"""Ticks that are due by the clock, counted from where it began so that nothing drifts; and cells that take the time of turns."""
 
+import math
 from collections import deque
 
 #: at most so much of the clock is made up for at once [s]; what is more is dropped, and told
@@ -8,6 +9,12 @@ LONGEST = 0.05
 WORK = 0.02
 #: what was dropped is told for so long [s]
 TOLD = 1.0
+#: a turn that comes so late waited for a cell that computed [s]
+COMPUTED = 1.0
+#: where turns come in time, but a page was not heard for so long, a cell awaits [s]
+QUIET = 1.5
+#: a turn later than that, or one that took longer itself, kept the page's words waiting [s]
+IN_TIME = 0.3
 
 
 class Pace:
@@ -69,3 +76,38 @@ class Pace:
         while self._dropped and self._dropped[0][0] < now - TOLD:
             self._dropped.popleft()
         return sum(late for _, late in self._dropped)
+
+
+class CellsBetween:
+    """Cells that run between the turns of a view, where both take turns in one thread: told by turns, and by a page's words.
+
+    Examples
+    --------
+    >>> cells = CellsBetween()
+    >>> cells.turn_begins(10.0, heard=10.0)    # how long a cell computed before it, and whether one awaits
+    (0.0, False)
+    >>> cells.turn_ended(10.0)
+    >>> cells.turn_begins(15.0, heard=10.0)
+    (5.0, False)
+    """
+
+    def __init__(self):
+        self._began = self._ended = math.inf  # of the last turn
+        self._in_time = -math.inf  # since when turns come in time
+
+    def turn_begins(self, now, heard):
+        """Return for how long a cell computed since the last turn [s], or 0, and whether one awaits.
+
+        Parameters
+        ----------
+        now, heard : float
+            Now, and when the page was heard last [s].
+        """
+        late, before, self._began = now - self._ended, self._began, now
+        if now - before > IN_TIME:
+            self._in_time = now
+        return late if late > COMPUTED else 0.0, now - max(heard, self._in_time) > QUIET
+
+    def turn_ended(self, now):
+        """Note when the turn ended [s]; infinity where no other is due."""
+        self._ended = now

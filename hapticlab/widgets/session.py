@@ -7,6 +7,7 @@ from collections import deque
 
 from ..device.turns import begin, has_threads
 from ..errors import PaddleError
+from .pace import CellsBetween
 from .stage import Stage
 
 #: presses that a front end has, see :meth:`Session.press`
@@ -66,7 +67,7 @@ class Session:
         self._views, self._turns, self._sink = {}, None, None
         self._said, self._wanted = deque(maxlen=1000), 0.0  # nobody may be there to do what is said
         self._heard = self._steady = -math.inf  # when a view was heard last, and since when without a gap
-        self._turned = math.inf  # when the last turn ended in which somebody looked
+        self._cells = CellsBetween()
         self._silent, self._end = None, ENDED  # since when, where silence ended it; and the words of the end
 
     # --- what a front end says, from whatever thread: stored, and done in the next turn
@@ -246,7 +247,7 @@ class Session:
                 self.stage.end()
                 frame = self.stage.last_frame(self._end)
             looks = bool(self._views)
-            self._turned = self.clock() if looks else math.inf
+            self._cells.turn_ended(self.clock() if looks else math.inf)
         if frame is not None:
             self._show(frame)
         return looks
@@ -266,12 +267,14 @@ class Session:
         """Say what a cell does to a simulation on view where there are no threads: it stands still, or hears nobody."""
         if not self._hears_between_cells:
             return
-        now = self.clock()
-        if now - self._turned > GAP:
+        computed, awaits = self._cells.turn_begins(self.clock(), self._heard)
+        if computed:
             self.motion.wake()  # what passed is not made up for
-            self.stage.tell(f"A cell computed for {now - self._turned:.1f} s: {self.stage.stopped}")
-        elif now - self._heard > GAP and not self.stage.note:
+            self.stage.tell(f"A cell computed for {computed:.1f} s: {self.stage.stopped}")
+        elif awaits and not self.stage.note:
             self.stage.tell(A_CELL_RUNS)
+        elif not awaits and self.stage.note == A_CELL_RUNS:
+            self.stage.tell("")
 
     def _follow_caught(self):
         """Let the hand begin where the stage has put it."""

@@ -752,8 +752,23 @@ def test_without_threads_a_simulation_goes_on_while_a_cell_awaits_and_says_that_
         assert stage.session.turn()
     assert stage.session.source.ticks - before == pytest.approx(5 / T, abs=20)
     assert stage.session.status == "Running, not in contact. " + A_CELL_RUNS + "."
-    stage.go(NOTE + 0.5)
+    stage.go(1 / 60)
     assert stage.session.status == "Running, not in contact."
+
+
+def test_without_threads_a_turn_that_takes_long_is_no_cell(one_thread, monkeypatch):
+    """As the first, which compiles: the page's words wait for it, and are heard soon after."""
+    stage = Stage()
+    monkeypatch.setattr(stage.session.source, "warm", lambda: setattr(stage, "now", stage.now + 3.0))
+    stage.open()
+    for _ in range(80):
+        stage.now += 1 / 60
+        stage.session.turn()
+        assert "cell" not in stage.session.status
+    for _ in range(20):
+        stage.now += 1 / 60
+        stage.session.turn()
+    assert A_CELL_RUNS in stage.session.status
 
 
 def test_without_threads_a_page_that_says_nothing_for_a_minute_is_gone(one_thread):

@@ -34,8 +34,8 @@ KNOWN = {(usb.vendor, usb.product): usb.words for board in BOARDS.values() for u
 #: what somebody can do whose Python a browser runs
 IN_A_BROWSER = (
     'Python in a browser opens no serial ports. Use a simulated paddle: hl.connect("sim://hapkit") runs its firmware, and '
-    'hl.SimulatedPaddle.from_profile("hapkit") needs none. For a paddle that is plugged in, install hapticlab on a computer '
-    "(pip install hapticlab)"
+    'hl.SimulatedPaddle.from_profile("hapkit") needs none. A paddle on a cable needs hapticlab on a computer (pip install '
+    "hapticlab), or without Python the page paddle.html of a site that `hapticlab site` made"
 )
 
 
