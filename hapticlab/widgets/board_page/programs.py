@@ -26,6 +26,8 @@ HELP = " It also goes off at once when the page is hidden. Space and Esc stop it
 PRESS = "Motor off: hold the handle, then press Start"
 #: of a wall, in the order in which they are tried: period [s]
 PERIODS = {"uno": (1e-3, 2e-3), "pico": (1e-3,), "host": (1e-3,)}
+#: of an encoder, per second, that are asked of a board; the first one is none
+EDGES = (1.0, 5e3, 1e4, 2e4, 4.2e4, 8.2e4, 1e6)
 
 
 @dataclass(frozen=True)
@@ -121,13 +123,15 @@ def _told(choice, board, *, T, **options):
         program = stage.source.program
         every = decimation(program, paddle.exchange.port, board=board)
         check_margin(program)
-        if board != "host" and not cost(program, board, every=every).fits:
+        edges = edges_beside(program, board, every)
+        if edges == 0 or program.facts.get("port_mass"):  # of which the mass of the real handle decides
             return None
     apart = {"T": T * every, "apart": rows_apart(T * every)}
     shown = about(stage)
     return {
         "T": T,
         "every": every,
+        "edges": edges,
         "code": base64.b64encode(encode(program, word_bits=BOARDS[board].word_bits)).decode(),
         "types": ["f32", "f32", *(c.type for c in program.outputs)],
         "watched": [c.name for c in program.outputs[1:]],
@@ -137,3 +141,13 @@ def _told(choice, board, *, T, **options):
         "touching": recorded_touching(stage.scene, stage.scene.watch),
         "record": {"units": program.units, "scene": program.name},
     }
+
+
+def edges_beside(program, board, every):
+    """Return how many edges of an encoder per second a board counts beside a program, of EDGES.
+
+    It is 0 where the program does not fit, and None on a board whose time is not limited.
+    """
+    if BOARDS[board].hz is None:
+        return None
+    return max((edges for edges in EDGES if cost(program, board, every=every, edges_per_second=edges).fits), default=0)

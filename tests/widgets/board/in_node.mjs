@@ -336,6 +336,19 @@ const scenarios = {
     await b.press("start")
     return { words: b.status(), obstacle: b.paddle.obstacle, said: [...new Set(b.said())] }
   },
+  async "an encoder that is too fast"() {
+    const b = await bench()
+    await b.homed().connect()
+    b.source.told = { ...b.source.told, edges: 1e5 } // at 2 m/s and 10 um per count there are twice as many
+    await b.press("start")
+    return { words: b.status(), said: [...new Set(b.said())] }
+  },
+  async "a sensor that is too slow"() {
+    const b = await bench({ store: asked.stores.slow })
+    await b.homed().connect()
+    await b.press("start")
+    return { words: b.status(), said: [...new Set(b.said())] }
+  },
   async "sign not checked"() {
     const b = await bench({ store: asked.stores.unchecked })
     await b.running(0.025)

@@ -5,6 +5,7 @@ from host_driver import SETTINGS, settings
 
 import hapticlab as hl
 from hapticlab.device.board.streaming import LEASH
+from hapticlab.device.link.messages import SENSORS
 from hapticlab.widgets.board_page.programs import Choice, labs, page_data
 
 w, y = hl.parameters("w y", units="N*m m")
@@ -31,6 +32,7 @@ def request(**more):
     stores = {
         "usual": settings(ident=0xBEEF, date=20261120),
         "hot": settings(force_continuous=0.8, heating_time=1.0, force_max=0.9),
+        "slow": settings(sensor=SENSORS["MAGNETORESISTIVE"], wrap=920, metres_per_count=1e-4, sensor_flight=2e-3),
         "unwired": settings(wired=0, checked=0),
         "unchecked": settings(checked=0),
     }

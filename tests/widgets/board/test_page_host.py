@@ -43,7 +43,13 @@ def test_a_wall_is_felt_and_its_sliders_move_it(found, tmp_path):
     path = tmp_path / "felt.npz"
     path.write_bytes(base64.b64decode(felt["record"]))
     log = hl.records.Telemetry.load(path)
-    assert len(log) > 250 and log.changes and log.F == pytest.approx(np.maximum(150 * (log.x - 0.01), 0), abs=2e-3 * 150 * 10)
+    assert (
+        len(log) > 250
+        and log.changes
+        and not log.gap.any()
+        and log.delay == 0
+        and log.F == pytest.approx(np.maximum(150 * (log.x - 0.01), 0), abs=2e-3 * 150 * 10)
+    )
     assert felt["off"]["off"] <= 0.002 and felt["status"].startswith("Motor off: hold the handle, then press Start.")
 
 
@@ -100,6 +106,8 @@ def test_a_fault_is_told_in_the_packages_words_and_start_begins_again(found):
         ("another version", "a different version of the messages"), ("port taken", "Another tab or program may use it"),
         ("no port chosen", "No port was chosen"), ("no API", "Use Chrome or Edge"),
         ("nothing answers", "No paddle answered within 3 s"),
+        ("an encoder that is too fast", "the encoder gives 2e+05 edges per second"),
+        ("a sensor that is too slow", "the sensor takes 0.002 s from its last count back to its first"),
         ("not calibrated", "run `hapticlab calibrate`"), ("not wired", "run `hapticlab calibrate`"),
     ],
 )  # fmt: skip

@@ -113,6 +113,24 @@ class PagePaddle {
     return ""
   }
 
+  // Why this board cannot run a program at its period, in words, or "": what upload.check_period and the costs ask of settings.
+  refusal(told) {
+    const { board, settings } = this
+    const T = 1e6 * told.T // [us], as a board says its own
+    if (T < board.period_min * (1 - 1e-9) || T > board.period_max * (1 + 1e-9)) {
+      return `This scene has T = ${general(told.T)} s; the board needs ${general(board.period_min / 1e6)} to ${general(board.period_max / 1e6)} s.`
+    }
+    if (settings.sensor === TABLES.sensors.QUADRATURE) {
+      const edges = settings.speed_max / Math.abs(settings.metres_per_count)
+      return edges <= (told.edges ?? Infinity) ? "" : `At its speed limit the encoder gives ${general(edges, 3)} edges per second; beside this scene the board counts ${general(told.edges, 3)}.`
+    }
+    if (told.T < settings.sensor_flight * (1 - 1e-6)) {
+      // it trusts no reading in flight, and decides with the next one: two of one flight would be taken for a motion
+      return `This scene has T = ${general(told.T)} s; the sensor takes ${general(settings.sensor_flight)} s from its last count back to its first.`
+    }
+    return ""
+  }
+
   // Whether the board knows where its handle is; it forgets with every reset.
   async isHomed() {
     return Boolean((await this.exchange.refresh()).flags & TABLES.flags.HOMED)
@@ -120,7 +138,8 @@ class PagePaddle {
 
   // Send a program and start it, as the press of ``pressed`` [s] asks. told: of data.programs; values: of its parameters, in their order
   async start(told, values, pressed) {
-    if (this.obstacle) throw new LinkProblem(this.obstacle, "NOT_WIRED")
+    const refused = this.obstacle || this.refusal(told)
+    if (refused) throw new LinkProblem(`${refused} Nothing was started.`, "REFUSED")
     const { exchange, clock } = this
     const era = exchange.era
     const before = await this.cleared()

@@ -226,9 +226,8 @@ class BoardSource {
   }
 
   notice(samples, now) {
-    const { flags, ...own } = splitFlags(samples)
-    for (const [name, column] of Object.entries(flags)) if (column.some(Boolean)) this.noticed[name] = now
-    this.recorder?.add({ ...own, intent: new Float64Array(own.t.length).fill(NaN) })
+    for (const name of Object.keys(this.words.noticed)) if (samples[name].some(Boolean)) this.noticed[name] = now
+    this.recorder?.add({ ...samples, intent: new Float64Array(samples.t.length).fill(NaN) })
     if (this.recorder?.full) this.stop()
   }
 
@@ -308,9 +307,4 @@ class BoardSource {
   look() {
     this.nextFrame = this.nextWords = -1
   }
-}
-
-function splitFlags(samples) {
-  const { saturated, gap, overrun, ...own } = samples
-  return { flags: { saturated, gap, overrun }, ...own }
 }

@@ -6,11 +6,12 @@ const OWN_COLUMNS = ["t", "x", "v", "F"]
 // Return the bytes of a log, {columns, parameters, changes, T, fault}. told: {units, scene, paddle, delay, sensor_delay,
 // force_max} of the scene on its paddle.
 function recordFile({ columns, parameters, changes, T, fault }, told) {
-  const order = Object.keys(columns).filter((name) => !OWN_COLUMNS.includes(name))
+  const order = Object.keys(columns).filter((name) => ![...OWN_COLUMNS, ...FLAG_COLUMNS].includes(name))
   const { units, scene, paddle, delay, sensor_delay } = told
   const about = { order, units, parameters, changes, scene, paddle, T, delay, sensor_delay, every: 1, fault: fault ?? null }
   const limited = columns.F.map((force) => Number(told.force_max !== null && Math.abs(force) >= told.force_max))
-  const flags = FLAG_COLUMNS.map((name) => [name, npy("|b1", Uint8Array.from(limited, (on) => (name === "saturated" ? on : 0)))])
+  const raised = { saturated: limited, gap: limited.map(() => 0), overrun: limited.map(() => 0), ...columns } // a board says them itself
+  const flags = FLAG_COLUMNS.map((name) => [name, npy("|b1", Uint8Array.from(raised[name]))])
   const numbers = [...OWN_COLUMNS.map((name) => [name, name]), ...order.map((name) => [`channel.${name}`, name])]
   return zipped([
     ["about", npyText(JSON.stringify(about))], ...numbers.map(([entry, name]) => [entry, npy("<f8", Float64Array.from(columns[name]))]), ...flags,
