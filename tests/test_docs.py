@@ -23,7 +23,7 @@ README = (ROOT / "README.md").read_text("utf-8")
 #: the pages for users, which README held until version 0.2; their examples run one after the other
 MANUAL = [
     f"docs/{name}.md"
-    for name in ("scenes", "live", "sharing", "methods", "measuring", "limits", "people", "boards", "engines", "systems")
+    for name in ("scenes", "live", "sharing", "site", "methods", "measuring", "limits", "people", "boards", "engines", "systems")
 ] + [f"docs/{name}.md" for name in ("owners_guide", "bring_up_card", "faults", "SAFETY")]
 PAGES_THAT_RUN = ["README.md", *(path for path in MANUAL if "```python" in (ROOT / path).read_text("utf-8"))]
 

@@ -17,10 +17,12 @@ import hapticlab as hl
 from hapticlab.cli.main import main
 from hapticlab.course.instructor import solved_notebook
 from hapticlab.course.labs import find_labs
-from hapticlab.site.build import build_site
+from hapticlab.site.build import RECORD, build_site
+from hapticlab.site.licences import parts, without_text
+from hapticlab.site.pages import PAGES
 
 ANSWERS = Path(__file__).parents[1] / "instructor"
-FIRST, CHECK = "import numpy as np", 'own = hl.check("02.period_leak"'
+FIRST = "import numpy as np"
 # Counts the pictures that differ from the one before, from now on.
 COUNT = """() => {
   const canvas = document.querySelector("canvas.hl-stage"), context = canvas.getContext("2d")
@@ -37,10 +39,19 @@ COUNT = """() => {
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("site") / "site"
-    build_site(folder, pyodide=archive(), say=lambda words: None)
-    with served(folder) as address:
+def built(tmp_path_factory):
+    """A site in a folder with files of somebody else, and with one of an earlier site; and what the build says."""
+    folder, said = tmp_path_factory.mktemp("site") / "site", []
+    before = {".git/HEAD": "mine", "CNAME": "mine", "old.js": "old", RECORD: json.dumps({"files": ["old.js", "index.html"]})}
+    for name, text in before.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    return build_site(folder, pyodide=archive(), say=said.append), said
+
+
+@pytest.fixture(scope="module")
+def site(built):
+    with served(built[0].folder) as address:
         yield address
 
 
@@ -79,11 +90,38 @@ def points(path, capsys):
 
 
 @pytest.mark.wide
-def test_a_lab_opens_from_the_first_page_and_its_first_cell_runs_as_it_is(page, site):
+def test_a_site_has_the_labs_what_they_need_and_a_licence_text_for_every_file(built):
+    made, said = built
+    found = {path.relative_to(made.folder).as_posix(): path for path in made.folder.rglob("*") if path.is_file()}
+    others = {".git/HEAD", "CNAME"}
+    assert "old.js" not in found and {found.pop(name).read_text() for name in others} == {"mine"}
+    recorded = json.loads(found[RECORD].read_text("utf-8"))["files"]
+    assert set(found) == {*recorded, RECORD} and made.files == len(found)
+    assert [words.partition(",")[0] for words in said] == [
+        f"Pyodide of {archive()}", "hapticlab and 0 packages that it needs", "JupyterLite with 11 labs",
+        f"{len(PAGES)} pages that need no Python",
+    ]  # fmt: skip
+    for lab in find_labs():
+        for path in (lab.notebook, lab.path / "checks.py"):
+            assert found[f"files/{lab.name}/{path.name}"].read_bytes() == path.read_bytes()
+    assert not [name for name in found if "solution" in name or "hidden.py" in name or name.endswith(".map")]
+    assert [name for name in without_text(parts(made.folder)) if name not in others] == []
+
+
+@pytest.mark.wide
+def test_a_lab_opens_from_the_first_page(page, site):
     open_lab(page, site, "02")
-    assert "m = 0.03 kg" in run_cell(page, FIRST)
-    seen = ask(page, "import os; print(os.getcwd(), *sorted(os.listdir()))")
-    assert seen == "/drive/02_virtual_wall 02_virtual_wall.ipynb checks.py"  # so that a check reads the lab's own
+    assert page.locator(".jp-Notebook h1").first.text_content().startswith("Lab 02: The virtual wall")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lab", find_labs(), ids=lambda lab: lab.number)
+def test_the_first_cell_of_every_lab_runs_as_it_is(page, site, lab):
+    open_lab(page, site, lab.number)
+    first = next(source for source in cells(page) if "import hapticlab as hl" in source)
+    assert "Error" not in run_cell(page, first)
+    seen = ask(page, "import os; print(os.getcwd(), *sorted(os.listdir()), hl.__version__)")
+    assert seen == f"/drive/{lab.name} {lab.notebook.name} checks.py {hl.__version__}"  # so that a check reads the lab's own
 
 
 @pytest.mark.slow

@@ -1,18 +1,17 @@
-"""A whole site, and the folders in which none is built."""
+"""What a site is made of, and the folders in which none is built; tests/browser/test_site.py has a whole one."""
 
 import json
 from importlib.metadata import PackageNotFoundError
+from pathlib import Path
 
 import pytest
-from pyodide_archive import archive
 
 from hapticlab.cli.main import main
 from hapticlab.course.labs import find_labs
 from hapticlab.errors import EngineMissingError
 from hapticlab.site import build, lite
 from hapticlab.site.build import Site, build_site
-from hapticlab.site.licences import parts, without_text
-from hapticlab.site.pages import PAGES
+from hapticlab.site.needs import needed
 
 
 def test_a_folder_that_holds_anything_else_is_refused_before_anything_is_written(tmp_path, capsys):
@@ -66,49 +65,25 @@ def test_the_command_says_size_and_time_and_what_to_do_next(tmp_path, monkeypatc
     assert {name: given[name] for name in ("pyodide", "wheel")} == {"pyodide": "pyodide.tar.bz2", "wheel": "one.whl"}
 
 
-def files(folder):
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
-
-@pytest.mark.wide
-def test_a_site_has_the_labs_what_they_need_and_a_licence_text_for_every_file(tmp_path, own_wheel):
-    folder, said = tmp_path / "site", []
-    (folder / ".git").mkdir(parents=True)
-    (folder / ".git" / "HEAD").write_text("mine")
-    (folder / "old.js").write_text("of an earlier build")
-    (folder / "CNAME").write_text("mine")
-    (folder / build.RECORD).write_text(json.dumps({"files": ["old.js", "index.html"]}))
-    built = build_site(folder, pyodide=archive(), wheel=own_wheel, say=said.append)
-    found = files(folder)
-    assert "old.js" not in found and found["CNAME"] == found[".git/HEAD"] == b"mine"
-    recorded = json.loads(found[build.RECORD])["files"]
-    assert set(found) == {*recorded, build.RECORD, "CNAME", ".git/HEAD"} and built.files == len(recorded) + 1
-    assert built.size == sum(len(found[name]) for name in (*recorded, build.RECORD))
-    assert [words.partition(",")[0] for words in said] == [
-        f"Pyodide of {archive()}", "hapticlab and 0 packages that it needs", "JupyterLite with 11 labs",
-        f"{len(PAGES)} pages that need no Python",
-    ]  # fmt: skip
-    for lab in find_labs():
-        for path in (lab.notebook, lab.path / "checks.py"):
-            assert found[f"files/{lab.name}/{path.name}"] == path.read_bytes()
-    assert not [name for name in found if "solution" in name or "hidden.py" in name or name.endswith(".map")]
-    (folder / "CNAME").unlink()
-    (folder / ".git" / "HEAD").unlink()
-    assert without_text(parts(folder)) == []
-
-
-@pytest.mark.wide
-def test_the_kernel_loads_from_the_site_what_is_there(tmp_path, own_wheel, monkeypatch):
-    """A site without Pyodide: packages that Pyodide lacks are in it, and everything else is asked for by name."""
-    monkeypatch.setattr(build, "write_pages", lambda folder: None)  # the test above has them
-    build_site(tmp_path / "site", wheel=own_wheel, say=lambda words: None)
-    settings = json.loads((tmp_path / "site" / "jupyter-lite.json").read_text())["jupyter-config-data"]["litePluginSettings"]
-    kernel = settings[lite.KERNEL]
+def test_the_kernel_is_told_of_every_package_and_never_asks_pypi(tmp_path):
+    """Without a distribution of Pyodide: what Pyodide lacks is in the site, and everything else is asked for by name."""
+    theirs, ours = needed()
+    (tmp_path / "pypi").mkdir()
+    made = [tmp_path / "pypi" / f"{name}-1-py3-none-any.whl" for name in ours]
+    lite.prepare(tmp_path, theirs, made)
+    settings = json.loads((tmp_path / "jupyter-lite.json").read_text())["jupyter-config-data"]["litePluginSettings"]
+    kernel = settings["@jupyterlite/pyodide-kernel-extension:kernel"]
     assert kernel["disablePyPIFallback"] and "pyodideUrl" not in kernel
     asked = kernel["loadPyodideOptions"]["packages"]
-    worker = tmp_path / "site" / "extensions" / lite.EXTENSIONS["jupyterlite-pyodide-kernel"] / "static"
-    assert list(worker.glob("comlink.worker.*.js"))
-    wheels = {(worker / name).resolve() for name in asked if name.endswith(".whl")}
-    assert wheels == {*(tmp_path / "site" / "pypi").glob("*.whl")} and {"numpy", "scipy", "sympy", "matplotlib"} <= set(asked)
-    names = {path.name.partition("-")[0] for path in wheels}
-    assert {"hapticlab", "pint", "pyserial", "anywidget", "ipywidgets", "comm"} <= names
+    worker = tmp_path / "extensions" / "@jupyterlite" / "pyodide-kernel-extension" / "static"
+    assert [(worker / name).resolve() for name in asked if name.endswith(".whl")] == made
+    assert {"numpy", "scipy", "sympy", "matplotlib", "micropip"} <= set(asked)
+    assert {"hapticlab", "pint", "pyserial", "anywidget", "ipywidgets", "comm"} <= {*asked, *ours}
+    (listed,) = json.loads((tmp_path / "jupyter_lite_config.json").read_text())["LiteBuildConfig"]["contents"]
+    assert files(Path(listed)).keys() == {
+        "README.md", *(f"{lab.name}/{path}" for lab in find_labs() for path in (lab.notebook.name, "checks.py")),
+    }  # fmt: skip
+
+
+def files(folder):
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
