@@ -31,16 +31,7 @@ PROGRAM = FIND_PACKAGE + "from hapticlab.grading.inside.zygote import main; main
 
 
 class Preloaded:
-    """An interpreter that begins to load at once, before its first zygote is asked for; a context manager.
-
-    Examples
-    --------
-    >>> import sys
-    >>> if sys.platform == "linux":
-    ...     with Preloaded() as preloaded:
-    ...         control, process = preloaded.zygote()
-    ...         control.close()
-    """
+    """An interpreter that begins to load at once, before its first zygote is asked for; a context manager."""
 
     def __init__(self):
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

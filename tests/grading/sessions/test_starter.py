@@ -37,17 +37,23 @@ def hold(size):
 FILE = "aGFsbG8="  # hallo
 
 
+@pytest.fixture(scope="module")
+def preloaded():
+    with Preloaded() as begun:
+        yield begun
+
+
 @pytest.fixture(
     scope="module", params=[*(pytest.param(level, marks=pytest.mark.wide) for level in ("none", "landlock")), "namespaces"]
 )
-def starter(request):
-    with start(request.param, limits=LIMITS) as started:
+def starter(request, preloaded):
+    with start(request.param, limits=LIMITS, zygote=preloaded.zygote()) as started:
         yield started
 
 
 @pytest.fixture(scope="module")
-def with_processes():
-    with start("namespaces", limits=MANY) as started:
+def with_processes(preloaded):
+    with start("namespaces", limits=MANY, zygote=preloaded.zygote()) as started:
         yield started
 
 
