@@ -400,6 +400,7 @@ def test_without_threads_a_cell_that_takes_the_turn_is_a_silence_too(board, one_
     assert stage.is_running
 
 
+@pytest.mark.always("threads")
 def test_a_view_that_nobody_keeps_switches_its_motor_off(both):
     with hl.connect("sim://hapkit?pace=real", paddle=HAND) as board:
         view = hl.live(board, WALL)

@@ -25,7 +25,8 @@ def connect(
     ----------
     port : str, optional
         ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. Without it, only
-        ports with the USB numbers of a known board are tried, and the one that answers as a paddle is used.
+        ports with the USB numbers of a known board are tried, and the one that answers as a paddle is used. Python in a
+        browser opens ``sim://`` alone.
     T : float or text, optional
         Sampling period [s], whole microseconds within the board's range; 1 ms, or that of ``paddle``.
     paddle : SimulatedPaddle, optional

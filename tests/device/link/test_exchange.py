@@ -185,6 +185,7 @@ def test_what_waits_is_read_at_once_also_where_a_port_counts_to_1():
     assert read_available(port) == bytes(range(64))
 
 
+@pytest.mark.always("one thread")
 def test_a_run_goes_on_while_nobody_asks_and_whoever_waits_reads(both):
     """By the clock on the wall, for longer than the silence that a board takes for the host's end."""
     with hl.connect("sim://hapkit?pace=real") as board:
