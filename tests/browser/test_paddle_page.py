@@ -245,11 +245,8 @@ HAPPENS = {
     "sensor's wire": ("fail('SENSOR')", FAULTS["sensor's wire"].within, "SENSOR"),
     "sensor frozen": (FREEZE, FAULTS["sensor frozen"].within, "FROZEN"),
     "program damaged": ("board.core.damageProgram(40, 1)", FAULTS["program damaged in memory"].within, "BAD_PROGRAM"),
-    "stack overflow": ("fail('MEMORY')", FAULTS["stack overflow"].within, "MEMORY"),
-    "another program": ("board.core.receive(encodeFrame('HELLO', 1, [77]))", 0.002, "Another program connected"),
     "board reset": ("board.reset()", 0.002, "was reset"),
     "unplugged": ("port.unplug()", SILENT, "disconnected during use"),
-    "port closed": ("port.onWay = () => new Uint8Array(0)", SILENT, "did not answer"),
     "device accepts no data": ("port.stuck = true", SILENT, "accepted no data"),
     "garbage": (NOISE, SILENT, "did not answer"),
 }

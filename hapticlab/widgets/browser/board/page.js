@@ -8,7 +8,10 @@ class PaddlePage {
   constructor(data, element, clock = PAGE_CLOCK) {
     Object.assign(this, { data, element, clock, paddle: null, source: null, view: null })
     for (const { name, title } of data.scenes) element("scene").append(new Option(title, name))
-    element("scene").addEventListener("change", () => this.choose())
+    element("scene").addEventListener("change", () => {
+      this.say("")
+      this.choose()
+    })
     element("connect").addEventListener("click", () => (this.paddle ? this.disconnect() : this.connect()))
     element("stop").addEventListener("click", () => this.stop())
     if (!navigator.serial) this.say(NO_SERIAL)
@@ -94,20 +97,20 @@ class PaddlePage {
 
   disconnect() {
     const { paddle } = this
+    this.closeView()
     this.forget("Disconnected.")
     return paddle.close()
   }
 
-  // The port is gone.
+  // The port is gone: the view stays to be read, and shows no motor.
   lost(problem) {
     if (!this.paddle) return
     this.source?.fallSilent(problem.message)
-    this.source = this.view = null
+    this.source = null
     this.forget(problem.message)
   }
 
   forget(words) {
-    this.closeView()
     this.paddle = null
     this.element("connect").textContent = "Connect a paddle"
     this.element("stop").hidden = true
@@ -121,10 +124,10 @@ class PaddlePage {
   choose() {
     const scene = this.data.scenes.find(({ name }) => name === this.element("scene").value)
     this.element("about").textContent = scene.about
-    if (!this.paddle) return
+    if (!this.paddle) return undefined
     this.closeView()
     const told = scene.boards[this.paddle.board.name]
-    if (this.paddle.obstacle) return
+    if (this.paddle.obstacle) return undefined
     if (!told) return this.say(`This scene does not fit the board ${this.paddle.board.name}. Choose another one.`)
     this.source = new BoardSource(told, this.data.words, this.paddle, {
       picture: new Drawing(told.picture),

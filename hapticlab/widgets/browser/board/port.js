@@ -1,8 +1,8 @@
 // A board's port by Web Serial. A person's press alone leads here: no page opens a port that was granted before by itself.
 
 const NO_SERIAL =
-  "This browser cannot open serial ports, so this page cannot reach a paddle. Use Chrome or Edge, version 89 or newer, or Opera on a "
-  + "computer, and open this page from an https address or from localhost."
+  "This browser cannot open serial ports, so this page cannot reach a paddle. Use Chrome or Edge, version 89 or newer, or another "
+  + "browser with Web Serial, on a computer, and open this page from an https address or from localhost."
 const NO_CHOICE = "No port was chosen. If the list was empty, plug in the board. A charging cable without data lines does not work."
 const FORBIDDEN = "This page may not open serial ports: it is inside another page, or the browser or its administrator forbids them."
 const TAKEN =
