@@ -32,6 +32,8 @@ LOCK = "pyodide-lock.json"
 CORE = "pyodide.mjs", "pyodide.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip"
 #: official wheels that are asked for; what they and the wheels of wheels.txt need comes too
 OFFICIAL = "numpy", "scipy", "sympy", "matplotlib", "pandas", "micropip"
+NPM = "ci --loglevel=error --no-audit --no-fund --fetch-retries=1 --prefix".split()
+PIP = "-m pip --quiet --disable-pip-version-check --retries=1 download --no-deps --require-hashes".split()
 #: Pyodide as markers of requirements see it
 BROWSER = {"sys_platform": "emscripten", "platform_machine": "wasm32", "platform_system": "Emscripten", "python_version": "3.14"}
 #: which wheels pip may choose, whatever runs it; the carrier excludes Python 3.14, but nothing of it is installed
@@ -79,10 +81,9 @@ def _make(aside):
     """Make the archive in a new folder below ``aside``, and return it."""
     for path in PINS[:2]:
         shutil.copy(path, aside)
-    _fetch([shutil.which("npm") or "npm", "ci", "--silent", "--no-audit", "--no-fund", "--prefix", aside], "npm")
+    _fetch([shutil.which("npm") or "npm", *NPM, aside], "npm")
     fetched = aside / "fetched"
-    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check", "download", "--no-deps", "--require-hashes"]
-    _fetch([*pip, *TAGS, "--dest", fetched, "--requirement", PINS[2]], "PyPI")
+    _fetch([sys.executable, *PIP, *TAGS, "--dest", fetched, "--requirement", PINS[2]], "PyPI")
     core, made = aside / "node_modules" / "pyodide", aside / "archive"
     made.mkdir()
     for name in CORE:
@@ -111,7 +112,7 @@ def _make(aside):
 def _fetch(command, where):
     try:
         done = subprocess.run(command, capture_output=True, text=True)
-        said = done.stderr.strip().rpartition("\n")[2] if done.returncode else None
+        said = done.stderr.strip() if done.returncode else None
     except OSError as error:
         said = str(error)
     if said is not None:
