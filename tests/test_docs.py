@@ -91,6 +91,7 @@ def test_boards_run(capsys):
 @pytest.mark.parametrize(
     "path", [path for path in PAGES_THAT_RUN if path not in ("README.md", "docs/scenes.md", "docs/boards.md", LONG)]
 )
+@pytest.mark.always("docs/[!m]*")  # methods.md tries 396 settings, which takes two seconds
 def test_pages_run(path, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # a page may write files
     run_page(path)
