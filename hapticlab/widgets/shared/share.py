@@ -109,7 +109,7 @@ def share(
     picture = still(stage.drawn(None), stage.picture.box, f"{scene.name}: the first picture of the scene")
     text = page(data, lead(scene), body(scene, python, data["fixed"]), picture)
     path = Path(_file_name(scene.name) if path is None else path)
-    path.write_text(text, "utf-8")
+    path.write_text(text, "utf-8", newline="\n")
     return SharedFile(path, len(text.encode()), stage.source.program.name)
 
 

@@ -4,6 +4,7 @@ import base64
 import getpass
 import hashlib
 import json
+import math
 import re
 from collections import Counter
 from html.parser import HTMLParser
@@ -12,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import hapticlab as hl
-from hapticlab.errors import PaddleError, ParameterError
+from hapticlab.errors import AnalysisError, PaddleError, ParameterError
 from hapticlab.widgets.shared.document import VIEW_SCRIPTS, read
 from hapticlab.widgets.shared.page import PAGE_SCRIPTS
 
@@ -24,6 +25,11 @@ def labelled(axes, *, x):
     """A picture whose label is hostile."""
     axes.set(xlim=(-0.05, 0.05), ylim=(-0.01, 0.01))
     axes.text(x, 0.0, HOSTILE)
+
+
+def unrecordable(axes, *, x):
+    """A picture that a page cannot draw: it needs x as a number of Python."""
+    labelled(axes, x=math.sin(x))
 
 
 class Elements(HTMLParser):
@@ -128,4 +134,6 @@ def test_what_cannot_be_shared_is_refused(tmp_path):
         hl.share(wall, PADDLE, tmp_path / "nowhere" / "a.html")
     with pytest.raises(ParameterError, match="k"):
         hl.share(hl.wall(), PADDLE, tmp_path / "a.html")
+    with pytest.raises(AnalysisError, match="NumPy"):
+        hl.share(wall, PADDLE, tmp_path / "a.html", picture=unrecordable)
     assert not list(tmp_path.iterdir())
