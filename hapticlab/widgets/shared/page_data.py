@@ -44,7 +44,7 @@ def page_data(stage):
         "paddle": str(paddle),
         "units": {**UNITS, **program.units, "intent": "m"},
         "start": stage.source.place,
-        "seed": paddle.seed,
+        "seed": int(paddle.seed),  # NumPy has integers that JSON has not
         "force_max": paddle.force_max,
         "watched": list(stage.motion.watched),
         "programs": {name: _module(link(program, one)) for name, one in paddles.items()},

@@ -107,7 +107,7 @@ def test_a_hand_that_aims_as_in_a_run_feels_the_same():
 
 def test_a_noisy_sensor_and_hand_have_the_noise_that_the_paddle_says():
     """Another generator's than Python's: with the noise of both, the same size, and none is drawn of a hand that is gone."""
-    paddle = replace(PLAIN, noise=2e-5, hand=hl.Hand("pinch", push_noise=0.3), seed=4)
+    paddle = replace(PLAIN, noise=2e-5, hand=hl.Hand("pinch", push_noise=0.3), seed=np.int64(4))
     told = page_data(Stage(paddle, WALL, clock=lambda: 0.0))
     rest = {"intent": text(np.zeros(4001))}
     (answer,) = in_node([("steps", {"told": told, "plan": [rest, {"hold": False}, rest]})])

@@ -1,5 +1,7 @@
 """A shared page's view gives what a notebook's gives: the same rows, flags and words for the same clock, hand and presses."""
 
+import functools
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -94,23 +96,24 @@ def in_python(paddle, scene, script):
     return frames, stage.motion.log
 
 
-@pytest.fixture(scope="module")
-def seen():
-    """What a page and Python show in each script."""
-    cases = []
-    for paddle, scene, script in SCRIPTS.values():
-        told = page_data(Stage(paddle, scene, clock=lambda: 0.0))
-        cases.append(("view", {"told": told, "script": [[now, script.get(k, [])] for k, now in enumerate(moments())]}))
-    return {name: (answer, *in_python(*SCRIPTS[name])) for name, answer in zip(SCRIPTS, in_node(cases), strict=True)}
+@functools.cache
+def shown(name):
+    """What a page and Python show in a script."""
+    paddle, scene, script = SCRIPTS[name]
+    told = page_data(Stage(paddle, scene, clock=lambda: 0.0))
+    moves = [[now, script.get(k, [])] for k, now in enumerate(moments())]
+    (answer,) = in_node([("view", {"told": told, "script": moves})])
+    return answer, *in_python(paddle, scene, script)
 
 
-@pytest.fixture(params=SCRIPTS)
-def both(request, seen):
-    return seen[request.param]
+def each(*names):
+    """Tests of scripts: the wall always, the others in the wide tier."""
+    return pytest.mark.parametrize("name", [pytest.param(one, marks=[pytest.mark.wide] * (one != "a wall")) for one in names])
 
 
-def test_frames_are_those_of_a_notebook(both):
-    answer, frames, _ = both
+@each(*SCRIPTS)
+def test_frames_are_those_of_a_notebook(name):
+    answer, frames, _ = shown(name)
     assert len(answer["seen"]) == len(frames) > 100
     flags, status = {}, ""
     for found, frame in zip(answer["seen"], frames, strict=True):
@@ -122,8 +125,9 @@ def test_frames_are_those_of_a_notebook(both):
         assert {name: frame.flags[name] for name in flags} == flags
 
 
-def test_words_are_those_of_a_notebook(both):
-    answer, frames, _ = both
+@each(*SCRIPTS)
+def test_words_are_those_of_a_notebook(name):
+    answer, frames, _ = shown(name)
     said = [one["status"] for one in answer["seen"] if "status" in one]
     found = [words for k, words in enumerate(said) if words not in said[k - 1 : k]]  # a view that comes back hears all again
     expected = [frame.status for frame in frames if frame.status]
@@ -139,15 +143,15 @@ WORDS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SCRIPTS)
-def test_a_script_brings_about_what_it_is_for(seen, name):
-    found = " ".join(one.get("status", "") for one in seen[name][0]["seen"])
+@each(*SCRIPTS)
+def test_a_script_brings_about_what_it_is_for(name):
+    found = " ".join(one.get("status", "") for one in shown(name)[0]["seen"])
     assert [words for words in WORDS[name] if words not in found] == []
 
 
-@pytest.mark.parametrize("name", ["a wall", "a fault"])
-def test_a_record_is_that_of_a_notebook(seen, name):
-    answer, _, log = seen[name]
+@each("a wall", "a fault")
+def test_a_record_is_that_of_a_notebook(name):
+    answer, _, log = shown(name)
     (saved,) = answer["saved"]
     assert saved["T"] == log.T and saved["fault"] == log.fault
     assert saved["parameters"] == log.parameters
