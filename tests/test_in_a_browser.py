@@ -13,6 +13,7 @@ from hapticlab.analysis.sweeps.forked_workers import shared_out
 from hapticlab.analysis.sweeps.workers import number_of
 from hapticlab.base.in_notebook import require_processes
 from hapticlab.cli import board, grade_start, labs
+from hapticlab.cli.main import main
 from hapticlab.compiler.engines import vm
 from hapticlab.compiler.engines.table import ENGINES, chosen
 from hapticlab.device.link.serial_ports import IN_A_BROWSER, available_ports
@@ -21,6 +22,7 @@ from hapticlab.errors import CourseError, EngineMissingError, HapticlabError, Po
 from hapticlab.grading.run import run
 from hapticlab.grading.sessions.starter import start
 from hapticlab.self_test.report import self_test
+from hapticlab.site.lite import check_builders
 
 
 @pytest.fixture
@@ -75,6 +77,7 @@ def test_a_system_whose_ports_pyserial_cannot_list_has_no_known_board(monkeypatc
         (start, CourseError),
         (lambda: grade_start.grade(None, None), CourseError),
         (lambda: self_test(None, None), HapticlabError),
+        (check_builders, EngineMissingError),
     ],
 )
 def test_what_needs_other_processes_says_so(browser, asked, error):
@@ -91,6 +94,12 @@ def test_the_labs_are_copied_and_no_program_is_started(browser, capsys, tmp_path
     assert labs.labs(None, options) == 0
     assert (tmp_path / "00_meet_the_paddle" / "00_meet_the_paddle.ipynb").is_file()
     assert "use the file browser of this page" in capsys.readouterr().out
+
+
+def test_a_page_of_the_guide_is_named_and_no_program_is_started(browser, capsys):
+    assert main(["guide", "safety", "--open"]) == 1
+    said = capsys.readouterr()
+    assert said.out.strip().endswith("SAFETY.md") and "print(open(PATH).read())" in said.err
 
 
 @pytest.mark.parametrize("workers", [1, 4, -1])

@@ -8,6 +8,7 @@ import sysconfig
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
+from ..base.in_notebook import require_processes
 from ..course.labs import RECORD, copy_labs
 from ..errors import CourseError, EngineMissingError
 
@@ -27,7 +28,8 @@ WHEELS = "../../../../pypi"
 
 
 def check_builders():
-    """Raise EngineMissingError if what builds a site is not installed."""
+    """Raise EngineMissingError if what builds a site is not installed, or needs processes that are not there."""
+    require_processes("Building a site", EngineMissingError)
     for name in (*BUILDERS, *EXTENSIONS):
         try:
             distribution(name)
