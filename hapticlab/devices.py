@@ -10,7 +10,7 @@ A profile is a set of published or measured constants, and says which:
 Next: ``hl.connect()`` opens a board, ``hl.doctor()`` checks it, ``hl.identify.paddle`` measures its constants.
 """
 
-from .base.telemetry import PaddleProfile
+from .base.profile.paddle_profile import PaddleProfile
 from .course.drawings.drawing import drawing
 from .device.board.serial_paddle import SerialPaddle
 from .device.paddle import Paddle

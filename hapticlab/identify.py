@@ -6,9 +6,11 @@
 >>> 0.03 in found["m"], 0.1 in found["b"]        # each is an interval
 (True, True)
 
-Next: ``found.plot()`` shows what the fit leaves unexplained; ``hl.identify.hand`` identifies whoever holds the handle.
+Next: ``found.plot()`` shows what the fit leaves unexplained; ``hl.identify.twin("bench 7", found)`` makes a profile of it,
+to save, to simulate and to predict with; ``hl.identify.hand`` identifies whoever holds the handle.
 """
 
+from .base.profile.estimate import Estimate
 from .identification.free_motion import coasting, throw
 from .identification.hand import identify_hand as hand
 from .identification.handle_records import HandleRecord, chirp_response, spin_down, step_response
@@ -18,9 +20,11 @@ from .identification.motor_curve import MotorCurve
 from .identification.motor_curve import identify_motor as motor
 from .identification.paddle import identify_paddle as paddle
 from .identification.pushes import push_hand as pushes
+from .identification.twin import identify_twin as twin
 from .vocabulary import page
 
 __all__ = [
+    "Estimate",
     "HandleRecord",
     "MotorCurve",
     "chirp_response",
@@ -34,6 +38,7 @@ __all__ = [
     "spin_down",
     "step_response",
     "throw",
+    "twin",
 ]
 
 page(__name__)

@@ -1,4 +1,4 @@
-"""The immutable records that cross layers: what a paddle is, and what happened on it."""
+"""The immutable record of what happened on a paddle, which crosses layers."""
 
 from __future__ import annotations
 
@@ -38,87 +38,6 @@ MEANINGS = {
     "v_true": "Velocity before the sensor", "F_applied": "Force that acted", "saturated": "Samples whose force was limited",
     "gap": "Samples that follow a lost one", "overrun": "Samples whose step missed its period",
 }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class PaddleProfile(ShowsItself):
-    """The constants of a kind of paddle, and where they come from.
-
-    Attributes
-    ----------
-    name : str
-    m : float
-        Effective mass at the handle [kg].
-    b : float
-        Viscous damping at the handle [N s/m].
-    counts_per_metre : float or None
-        Encoder counts per metre of handle travel [1/m].
-    rounding : {"floor", "nearest"}
-    coulomb : float
-        Coulomb friction at the handle [N].
-    force_max : float or None
-        Largest force magnitude [N].
-    T : float
-        Sampling period [s].
-    nominal : bool
-        True where no constant was measured on the very device: a lab identifies them.
-    source : str
-    sensor_delay, sensor_noise, sensor_flight : float
-        Of the sensor: its lag [s], the standard deviation of its noise at the handle [m], and how long a reading lies
-        between the ends of its range when an angle sensor begins anew [s].
-    duty_dead : float
-        Part of full duty below which the motor gives no force, 0 ... 0.5.
-    duty_25, duty_50, duty_75 : float or None
-        Parts of full duty, dead band included, at which the motor gives a quarter, half and three quarters of its force.
-    force_full : float or None
-        Force at full duty [N].
-    carrier : float or None
-        PWM carrier that the motor's driver can follow [Hz].
-    wiring : str
-        Name of the usual wiring of its sensor and its driver.
-
-    Examples
-    --------
-    >>> from hapticlab.base.telemetry import PaddleProfile
-    >>> print(PaddleProfile("toy", m=0.05, b=0.1, source="made up"))
-    paddle toy: m = 0.05 kg, b = 0.1 N s/m, T = 0.001 s (nominal, not measured on this device; source: made up)
-    """
-
-    name: str
-    m: float
-    b: float
-    counts_per_metre: float | None = None
-    rounding: str = "floor"
-    coulomb: float = 0.0
-    force_max: float | None = None
-    T: float = 1e-3
-    nominal: bool = True
-    source: str = ""
-    sensor_delay: float = 0.0
-    sensor_noise: float = 0.0
-    sensor_flight: float = 0.0
-    duty_dead: float = 0.0
-    duty_25: float | None = None
-    duty_50: float | None = None
-    duty_75: float | None = None
-    force_full: float | None = None
-    carrier: float | None = None
-    wiring: str = ""
-
-    def __str__(self) -> str:
-        parts = [f"m = {self.m:g} kg", f"b = {self.b:g} N s/m", f"T = {self.T:g} s"]
-        if self.counts_per_metre:
-            parts.append(f"{1e6 / self.counts_per_metre:g} um per count ({self.rounding})")
-        if self.coulomb:
-            parts.append(f"Coulomb friction {self.coulomb:g} N")
-        if self.sensor_delay:
-            parts.append(f"sensor {1e3 * self.sensor_delay:g} ms late")
-        if self.duty_dead:
-            parts.append(f"no force below {100 * self.duty_dead:g} % duty")
-        if self.force_max:
-            parts.append(f"|F| <= {self.force_max:g} N")
-        standing = "nominal, not measured on this device" if self.nominal else "measured"
-        return f"paddle {self.name}: {', '.join(parts)} ({standing}; source: {self.source or 'not given'})"
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from ..errors import AnalysisError, PaddleError
 
 if TYPE_CHECKING:
     from ..base.annotations import Number
-    from ..base.telemetry import PaddleProfile
+    from ..base.profile.paddle_profile import PaddleProfile
     from .hand.hand import Hand
     from .paddle import Paddle
 
@@ -122,7 +122,7 @@ class Device(ShowsItself):
 def known(device: AnyDevice, *names: str, or_none: str = "") -> tuple[Any, ...]:
     """The numbers of these names, of a paddle, its profile or a :class:`Device`; a number that is missing is refused in words.
 
-    A paddle on a board has those that its board keeps. A profile has no delay and no hand. The delay is that from where
+    A paddle on a board has those that its board keeps. A profile has no hand. The delay is that from where
     the handle is to the force that follows from it: the sensor's lag and the computational delay together.
 
     Parameters

@@ -7,9 +7,18 @@ delay asks more of a wall than the filter does, so that a limit errs to the safe
 from __future__ import annotations
 
 import math
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from ..base.telemetry import PaddleProfile
+from ..base.profile.estimate import Estimate
+from ..base.profile.paddle_profile import PaddleProfile
+from ..base.profile.profile_file import SUFFIX, read_profile
 from ..errors import PaddleError
+from .simulated.motor import check_duties
+from .variants import VARIANTS
+
+if TYPE_CHECKING:
+    from ..base.annotations import File
 
 
 def _counts_per_metre(counts, *, pulley, sector, handle):
@@ -99,21 +108,51 @@ eth = PaddleProfile(
 PROFILES = {p.name: p for p in (hapkit, hapkit_as5048a, longhorn, motor_shield, eth)}
 
 
-def profile(name: str) -> PaddleProfile:
-    """Return the profile of a kind of paddle by its name.
+def profile(name: File) -> PaddleProfile:
+    """Return the profile of a kind of paddle by its name, or of one paddle from the file that its profile was saved to.
+
+    Each kind also exists ``_rough``, with typical friction and delays, ``_coarse``, with an encoder of 100 um per count,
+    and ``_slow``, with 2 ms per sample and 1 ms of delay, to try whether a result holds on more than one paddle.
 
     Parameters
     ----------
-    name : {"hapkit", "hapkit_as5048a", "longhorn", "motor_shield", "eth"}
+    name : {"hapkit", "hapkit_as5048a", "longhorn", "motor_shield", "eth"} or path
+        A kind, such as "hapkit" or "hapkit_rough", or a file that ends in ".json".
+
+    Raises
+    ------
+    PaddleError
+        For a name that no profile has, and a file that is damaged, of another version, or holds what no paddle has.
 
     Examples
     --------
     >>> from hapticlab.device.profiles import profile
     >>> profile("eth").m
     0.166
+    >>> print(profile("hapkit_rough")["coulomb"])
+    coulomb = 0.05 N, between 0.02 and 0.08
     """
-    if name not in PROFILES:
-        raise PaddleError(
-            f"no profile {name!r}; there are {', '.join(PROFILES)}. For a profile of your own write hl.devices.PaddleProfile(...)"
-        )
-    return PROFILES[name]
+    if not isinstance(name, str) or name.endswith(SUFFIX):
+        return _from_file(name)
+    kind, _, variant = name.rpartition("_")
+    if name in PROFILES:
+        return PROFILES[name]
+    if kind in PROFILES and variant in VARIANTS:
+        return VARIANTS[variant](PROFILES[kind])
+    raise PaddleError(
+        f"no profile {name!r}; there are {', '.join(PROFILES)}, each also with {', '.join(f'_{word}' for word in VARIANTS)}. "
+        "Give a file that profile.save() wrote, such as 'bench7.json'; or for a profile of your own write "
+        "hl.devices.PaddleProfile(...)"
+    )
+
+
+def _from_file(path):
+    told = read_profile(path)
+    named = Path(path).name
+    try:
+        estimates = tuple(Estimate(**one) for one in told.pop("estimates"))
+        kept = PaddleProfile(**told, estimates=estimates)
+        check_duties(kept, PaddleError)
+    except PaddleError as refusal:
+        raise PaddleError(f"{named}: {refusal}") from None
+    return kept

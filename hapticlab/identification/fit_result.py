@@ -9,7 +9,8 @@ import numpy as np
 
 from ..base.drawing import COLD, FRAME, STYLES, house_style, new_figure
 from ..base.grid import Grid
-from ..base.shows_itself import ShowsItself, Tabular
+from ..base.profile.estimate import Estimate
+from ..base.shows_itself import Tabular
 from ..errors import AnalysisError
 from .sensor import DITHERED, explains, neighbours
 
@@ -22,38 +23,6 @@ if TYPE_CHECKING:
 PART = 0.05
 #: standard errors beyond a bound from which the motion is another than the model's; any, where it is not explained
 BEYOND = 4.0
-
-
-@dataclass(frozen=True)
-class Estimate(ShowsItself):
-    """A constant and its confidence interval, in ``unit``.
-
-    Examples
-    --------
-    >>> print(Estimate("m", 0.0301, 0.0297, 0.0305, "kg"))
-    m = 0.0301 kg, between 0.0297 and 0.0305
-    """
-
-    name: str
-    value: float
-    low: float
-    high: float
-    unit: str
-
-    @property
-    def half_width(self) -> float:
-        """Half the width of the interval."""
-        return (self.high - self.low) / 2
-
-    def __contains__(self, value: float) -> bool:
-        return self.low <= value <= self.high
-
-    def __float__(self) -> float:
-        return self.value
-
-    def __str__(self) -> str:
-        digits = 3 if self.half_width == 0 else int(np.clip(np.ceil(np.log10(abs(self.value / self.half_width) + 1)) + 2, 3, 9))
-        return f"{self.name} = {self.value:.{digits}g} {self.unit}, between {self.low:.{digits}g} and {self.high:.{digits}g}"
 
 
 class Estimated(Tabular):

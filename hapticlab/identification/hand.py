@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from ..base.profile.paddle_profile import PaddleProfile
 from ..base.telemetry import Telemetry, check_record
 from ..device.board.serial_paddle import SerialPaddle
 from ..device.device import total_delay
@@ -19,9 +20,6 @@ from .paddle import counts_per_metre_of
 from .pushes import FORCE, push_hand
 from .scoring import fit
 from .start import heading
-
-if TYPE_CHECKING:
-    from ..base.telemetry import PaddleProfile
 
 #: s that a hand is taken not to react; a stretch reflex begins after 25 to 50 ms, the will after 100 and more
 WINDOW = 0.06
@@ -80,7 +78,8 @@ def identify_hand(
         A record with ``F`` zero but for pushes; or a paddle, which then pushes the hand that holds it, at random times:
         on a board weaker first, until the handle is seen to come back (:func:`push_hand`).
     device : PaddleProfile, SimulatedPaddle or None
-        m, b, coulomb, delay of the handle alone; None takes the paddle's own. A free handle tells them to
+        m, b, coulomb, delay of the handle alone, the delay of a profile's being that of the record; None takes the
+        paddle's own. A free handle tells them to
         :func:`identify_paddle`.
     window : float
         How long after the begin of a push the hand is taken not to react [s].
@@ -115,7 +114,7 @@ def identify_hand(
             "hl.identify.hand: the paddle is not known. Give device=, a PaddleProfile or found.profile() of hl.identify.paddle"
         )
     own = {name: float(getattr(device, name, 0.0)) for name in ("m", "b", "coulomb")}
-    own["delay"] = float(total_delay(device if hasattr(device, "delay") else source))
+    own["delay"] = float(total_delay(source if isinstance(device, PaddleProfile) or not hasattr(device, "delay") else device))
     windows = _windows(source, window)
     quantum = 0.0 if counts_per_metre is None else 1 / abs(counts_per_metre)
     y = np.concatenate([source.x[a:b] for a, b in windows])

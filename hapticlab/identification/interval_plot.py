@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.drawing import COLD, WARM, house_style, new_figure
+from ..base.profile.estimate import Estimate
 from ..errors import AnalysisError
-from .fit_result import Estimate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

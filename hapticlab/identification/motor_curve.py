@@ -9,15 +9,18 @@ import numpy as np
 
 from ..base.drawing import FRAME, STYLES, house_style, new_figure
 from ..base.grid import Grid
+from ..base.profile.estimate import Estimate
 from ..base.statistics import student
 from ..errors import AnalysisError
-from .fit_result import Estimate, Estimated
+from .fit_result import Estimated
+from .twin import bounded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
     from ..base.annotations import Array
+    from ..base.profile.paddle_profile import PaddleProfile
 
 #: what is found, and its unit
 NAMES = {"force_full": "N", "duty_dead": "1", "duty_25": "1", "duty_50": "1", "duty_75": "1", "offset": "N"}
@@ -55,6 +58,11 @@ class MotorCurve(Estimated):
     def values(self) -> dict[str, float]:
         """Return force_full and the duties by name, as a PaddleProfile, a SimulatedPaddle and a board's settings take them."""
         return {name: self[name].value for name in NAMES if name != "offset"}
+
+    def as_constants(self, base: PaddleProfile | None) -> list[Estimate]:
+        """Return what was found as constants of a profile."""
+        source = f"identified from {len(self.duties)} readings of a scale, {self.confidence:.0%} interval"
+        return [bounded(name, self[name], source) for name in NAMES if name != "offset"]
 
     def _tables(self):
         yield "", Grid.of(self.estimates, "value", "low", "high", "unit")

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..base.arguments import number
+from ..base.profile.estimate import Estimate
 from ..device.board.serial_paddle import SerialPaddle
 from ..errors import AnalysisError, PaddleError
-from .fit_result import Estimate
 from .handle_records import HandleRecord, identify
 from .identifying_forces import LEAD, Excitation, centring, designed
 from .paddle_fit import PaddleFit
+from .twin import bounded, exact
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -52,6 +53,13 @@ class Identified(PaddleFit):
         """
         found, own = self["delay"], float(np.mean([record.log.delay for record in self.records]))
         return Estimate("sensor_delay", found.value - own, found.low - own, found.high - own, "s")
+
+    def _delays(self, source):
+        """The time that the computation took, and the lag of the sensor: the rest."""
+        if "delay" not in self.estimates:
+            return []
+        own = float(np.mean([record.log.delay for record in self.records]))
+        return [exact("delay", own, "computation, as the records say"), bounded("sensor_delay", self.sensor_delay, source)]
 
     def loaded(self, mass: float) -> tuple[HandleRecord, ...]:
         """The records as those of a handle with a known mass [kg] fixed to it; see :func:`identify`."""

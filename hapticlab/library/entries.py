@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 
 from ..base.grid import Grid
+from ..base.profile.paddle_profile import PaddleProfile
 from ..base.shows_itself import ShowsItself, Tabular
-from ..base.telemetry import PaddleProfile
 from ..errors import SceneError
 from ..scene.scene import Scene
 from . import bodies, contacts, mechanisms, pendulums, surfaces

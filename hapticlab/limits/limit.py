@@ -47,6 +47,7 @@ class Limit(ShowsItself, Guessed):
 
     MEANT: ClassVar[dict[str, str]] = {"k": "K", "value": "K", "stiffness": "K", "f": "frequency", "why": "reason"}
 
+    unit: ClassVar[str] = "N/m"
     K: float
     frequency: float | None
     kind: str

@@ -11,7 +11,8 @@ import pytest
 import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
 from hapticlab.analysis.records.energy import energy
-from hapticlab.base.telemetry import PaddleProfile, Telemetry
+from hapticlab.base.profile.paddle_profile import PaddleProfile
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
 
 

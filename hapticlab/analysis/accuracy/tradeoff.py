@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ...base.telemetry import PaddleProfile
+    from ...base.profile.paddle_profile import PaddleProfile
     from ...device.simulated.simulated_paddle import SimulatedPaddle
     from .tradeoff_choice import Configuration, NotFeasible
 

@@ -16,7 +16,7 @@ from ..stability.trial_limits import Limits
 from .tradeoff_rows import percent
 
 if TYPE_CHECKING:
-    from ...base.telemetry import PaddleProfile
+    from ...base.profile.paddle_profile import PaddleProfile
     from ...device.simulated.simulated_paddle import SimulatedPaddle
     from ...scene.scene import Scene
     from .reference import Reference

@@ -6,6 +6,7 @@ from bisect import bisect
 from dataclasses import dataclass, fields, replace
 
 from ...base.facts import Fact
+from ...base.profile.paddle_profile import PaddleProfile
 from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from ..device import Device
@@ -154,6 +155,18 @@ class Settings(ShowsItself):
         counts = 1 / abs(self.metres_per_count)
         known = {"m": self.m, "b": self.b, "coulomb": self.coulomb, "counts_per_metre": counts} if self.m else {}
         return Device(T=T, sensor_delay=self.sensor_delay, **known)
+
+    def profile(self, T):
+        """Return what simulated paddles and limits take of a paddle that samples every T [s]; its mass has to be known."""
+        if not self.m:
+            raise PaddleError("m = 0 in the board's settings, so its mass is not known. Identify it: hl.identify.paddle(paddle)")
+        measured = self.motor_law == MOTOR_LAWS["MEASURED"]
+        curve = {name: getattr(self, name) for name in ("duty_25", "duty_50", "duty_75")} if measured else {}
+        return PaddleProfile(
+            f"board {self.ident:04X}", T=T, counts_per_metre=1 / abs(self.metres_per_count), nominal=self.is_nominal,
+            source="settings of a board" + ("" if self.is_nominal else f", calibrated on {self.date}"),
+            **{name: getattr(self, name) for name in _OF_PROFILE}, **curve,
+        )  # fmt: skip
 
     def duty(self, force, steps=None):
         """Return the duty, -1 ... 1, that a board gives for a force at the handle [N]; rounded where it has so many steps."""

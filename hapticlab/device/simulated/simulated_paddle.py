@@ -9,7 +9,8 @@ import numpy as np
 
 from ...base.arguments import number
 from ...base.missed_events import warn_of_missed
-from ...base.telemetry import PaddleProfile, Telemetry
+from ...base.profile.paddle_profile import PaddleProfile
+from ...base.telemetry import Telemetry
 from ...base.unusual import DEVICE, warn_of_unusual
 from ...compiler.engines.table import ENGINES
 from ...errors import PaddleError
@@ -27,7 +28,7 @@ from .plant import delay_parts, dynamics, plant_of
 from .transition import smallest_mass
 
 if TYPE_CHECKING:
-    from ...base.annotations import Array, Number, PlantEngine
+    from ...base.annotations import Array, File, Number, PlantEngine
     from ...compiler.ir.program import Program
     from ...scene.scene import Scene
 
@@ -214,9 +215,9 @@ class SimulatedPaddle(Paddle):
             )
 
     @classmethod
-    def from_profile(cls, profile: PaddleProfile | str, **changes: Any) -> SimulatedPaddle:
-        """Return a paddle with the constants of a profile, given itself or by name: ``from_profile("eth", T=5e-4)``."""
-        profile = named_profile(profile) if isinstance(profile, str) else profile
+    def from_profile(cls, profile: PaddleProfile | File, **changes: Any) -> SimulatedPaddle:
+        """Return a paddle with the constants of a profile, or of its name or file: ``from_profile("eth", T=5e-4)``."""
+        profile = profile if isinstance(profile, PaddleProfile) else named_profile(profile)
         own = {f.name for f in fields(cls)}
         known = {RENAMED.get(f.name, f.name): getattr(profile, f.name) for f in fields(PaddleProfile)}
         unknown = sorted(set(changes) - own)
@@ -355,7 +356,7 @@ class SimulatedPaddle(Paddle):
         absent = [name for name, text in rows.items() if not text]
         lines += [f"  not modelled: {', '.join(absent)}"] if absent else []
         if self.profile is not None:
-            lines.append(f"  from {self.profile}")
+            lines.append("  from " + str(self.profile).split("\n")[0])
         return "\n".join(lines)
 
 

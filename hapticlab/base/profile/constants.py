@@ -1,0 +1,54 @@
+"""The constants of a paddle: the SI unit of each, and its range."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...errors import PaddleError
+from ..arguments import number
+
+_SOME, _NO_LESS, _DUTY = {"above": 0.0}, {"least": 0.0}, {"above": 0.0, "most": 1.0}
+#: constant -> its unit, "1" without one, and the range of its values
+CONSTANTS: dict[str, tuple[str, dict[str, float]]] = {
+    "m": ("kg", _SOME),
+    "b": ("N s/m", _NO_LESS),
+    "coulomb": ("N", _NO_LESS),
+    "delay": ("s", _NO_LESS),
+    "T": ("s", _SOME),
+    "counts_per_metre": ("1/m", _SOME),
+    "sensor_delay": ("s", _NO_LESS),
+    "sensor_noise": ("m", _NO_LESS),
+    "sensor_flight": ("s", _NO_LESS),
+    "force_max": ("N", _SOME),
+    "force_full": ("N", _SOME),
+    "duty_dead": ("1", {"least": 0.0, "most": 0.5}),
+    "duty_25": ("1", _DUTY),
+    "duty_50": ("1", _DUTY),
+    "duty_75": ("1", _DUTY),
+    "carrier": ("Hz", _SOME),
+}
+#: ways to turn a position into a count
+ROUNDINGS = ("floor", "nearest")
+
+
+def unit_of(name: str) -> str:
+    """Return the SI unit of a constant, "1" where it has none.
+
+    Examples
+    --------
+    >>> unit_of("b"), unit_of("duty_dead")
+    ('N s/m', '1')
+    """
+    return CONSTANTS[name][0]
+
+
+def in_range(name: str, given: Any, owner: str) -> float:
+    """Return a constant as a number in SI, or refuse it in words; a text may carry its unit.
+
+    Examples
+    --------
+    >>> in_range("m", "30 g", "a paddle")
+    0.03
+    """
+    unit, limits = CONSTANTS[name]
+    return number(name, given, unit, owner, error=PaddleError, **limits)

@@ -1,0 +1,65 @@
+"""Each kind of paddle as it may be on a bench: rough, with a coarse encoder, or slow.
+
+The kinds in ``profiles.py`` are ideal where nothing was published: no friction, no delay. A limit or a threshold that
+holds on them may not hold on the paddle in somebody's hand, so whatever is said of one paddle is tried on all four.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from ..base.profile.constants import unit_of
+from ..base.profile.estimate import Estimate
+from ..base.profile.paddle_profile import PaddleProfile
+
+_MADE_UP = "illustrative: published for no paddle"
+#: seconds from sample to force of this firmware on an emulated Uno: median and most at 1 ms, and most at 0.4 ms
+_ON_AN_UNO = 190e-6, 190e-6, 277e-6, "docs/boards.md, measured on an emulated Uno"
+#: a filter of 0.7 kHz as a pure delay; the interval from none to twice that
+_KMA199 = 1 / (2 * math.pi * 700)
+_LAG = (
+    _KMA199,
+    0.0,
+    2 * _KMA199,
+    "filter of the KMA199's data sheet (NXP, Rev. 2, table 11, note 5); the interval is illustrative",
+)
+_FRICTION = 0.05, 0.02, 0.08, _MADE_UP
+#: what is typical of each kind beside what its profile says: value, low, high, source
+TYPICAL = {
+    "hapkit": {"coulomb": _FRICTION, "delay": _ON_AN_UNO, "sensor_delay": _LAG},
+    "hapkit_as5048a": {"coulomb": _FRICTION, "delay": _ON_AN_UNO},
+    "longhorn": {"coulomb": (0.08, 0.03, 0.15, _MADE_UP), "delay": _ON_AN_UNO},
+    "motor_shield": {"coulomb": (0.08, 0.03, 0.15, _MADE_UP), "delay": _ON_AN_UNO},
+    "eth": {"coulomb": (0.05, 0.02, 0.1, _MADE_UP), "delay": (0.2e-3, 0.1e-3, 0.5e-3, _MADE_UP)},
+}
+#: counts per metre of a coarse encoder, and the factor by which one that is as coarse already is made coarser
+COARSE, COARSER = 1e4, 2.0
+#: sampling period and delay of a slow paddle [s]
+SLOW_T, SLOW_DELAY = 2e-3, 1e-3
+
+
+def rough(kind: PaddleProfile) -> PaddleProfile:
+    """A paddle with the friction and the delays that are typical of its kind, each with an interval."""
+    told = TYPICAL[kind.name]
+    estimates = tuple(Estimate(name, *ends, unit_of(name), source) for name, (*ends, source) in told.items())
+    values = {one.name: one.value for one in estimates}
+    return replace(kind, **values, estimates=estimates, **_about(kind, "rough", "typical friction and delays"))
+
+
+def coarse(kind: PaddleProfile) -> PaddleProfile:
+    """A paddle with an encoder of 100 um per count, or half the counts of its kind where these are as wide already."""
+    counts = COARSE if kind.counts_per_metre is None else min(COARSE, kind.counts_per_metre / COARSER)
+    return replace(kind, counts_per_metre=counts, **_about(kind, "coarse", "an illustrative encoder"))
+
+
+def slow(kind: PaddleProfile) -> PaddleProfile:
+    """A paddle that samples every 2 ms and gives each force 1 ms after its sample."""
+    return replace(kind, T=SLOW_T, delay=SLOW_DELAY, **_about(kind, "slow", "an illustrative period and delay"))
+
+
+def _about(kind, word, changed):
+    return {"name": f"{kind.name}_{word}", "source": f"{kind.name} with {changed}; {kind.source}"}
+
+
+VARIANTS = {"rough": rough, "coarse": coarse, "slow": slow}
