@@ -14,7 +14,6 @@ from ..base.profile.estimate import Estimate
 from ..base.profile.paddle_profile import PaddleProfile
 from ..base.profile.profile_file import SUFFIX, read_profile
 from ..errors import PaddleError
-from .simulated.motor import check_duties
 from .variants import VARIANTS
 
 if TYPE_CHECKING:
@@ -151,8 +150,6 @@ def _from_file(path):
     named = Path(path).name
     try:
         estimates = tuple(Estimate(**one) for one in told.pop("estimates"))
-        kept = PaddleProfile(**told, estimates=estimates)
-        check_duties(kept, PaddleError)
+        return PaddleProfile(**told, estimates=estimates)
     except PaddleError as refusal:
         raise PaddleError(f"{named}: {refusal}") from None
-    return kept

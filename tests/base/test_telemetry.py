@@ -1,4 +1,4 @@
-"""Telemetry and PaddleProfile: immutable, saved and read back without loss, and clear about what is missing."""
+"""Telemetry: immutable, saved and read back without loss, and clear about what is missing."""
 
 import copy
 import csv
@@ -11,7 +11,6 @@ import pytest
 import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
 from hapticlab.analysis.records.energy import energy
-from hapticlab.base.profile.paddle_profile import PaddleProfile
 from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
 
@@ -113,12 +112,6 @@ def test_repr_tells_of_events_that_were_not_located():
     missed = make_log(channels={"unlocated": [0, 1, 0, 2, 0]})
     assert "an event was not located in 2 of them, see unlocated" in repr(missed)
     assert "not located" not in repr(make_log(channels={"unlocated": np.zeros(5)}))
-
-
-def test_profile_says_what_it_is():
-    nominal = PaddleProfile("toy", m=0.05, b=0.1, counts_per_metre=1e5, coulomb=0.2, force_max=3, source="a sketch")
-    assert "10 um per count (floor)" in str(nominal) and "nominal, not measured" in str(nominal)
-    assert "measured; source: lab" in str(dataclasses.replace(nominal, nominal=False, source="lab"))
 
 
 @pytest.mark.parametrize("asker", [hl.chatter, hl.energy, hl.plot])

@@ -7,6 +7,8 @@ from typing import Any
 from ...errors import PaddleError
 from ..arguments import number
 
+#: part of full duty that a dead band may take
+MOST_DEAD = 0.5
 _SOME, _NO_LESS, _DUTY = {"above": 0.0}, {"least": 0.0}, {"above": 0.0, "most": 1.0}
 #: constant -> its unit, "1" without one, and the range of its values
 CONSTANTS: dict[str, tuple[str, dict[str, float]]] = {
@@ -21,7 +23,7 @@ CONSTANTS: dict[str, tuple[str, dict[str, float]]] = {
     "sensor_flight": ("s", _NO_LESS),
     "force_max": ("N", _SOME),
     "force_full": ("N", _SOME),
-    "duty_dead": ("1", {"least": 0.0, "most": 0.5}),
+    "duty_dead": ("1", {"least": 0.0, "most": MOST_DEAD}),
     "duty_25": ("1", _DUTY),
     "duty_50": ("1", _DUTY),
     "duty_75": ("1", _DUTY),
@@ -52,3 +54,17 @@ def in_range(name: str, given: Any, owner: str) -> float:
     """
     unit, limits = CONSTANTS[name]
     return number(name, given, unit, owner, error=PaddleError, **limits)
+
+
+def check_duties(kind, error):
+    """Refuse a dead band and a curve that no motor has; ``error`` is the class of the refusal."""
+    dead, curve = kind.duty_dead, (kind.duty_25, kind.duty_50, kind.duty_75)
+    if not 0 <= dead <= MOST_DEAD:
+        raise error(f"duty_dead = {dead!r}; needs a part of full duty from 0 to {MOST_DEAD:g}.")
+    given = [duty for duty in curve if duty is not None]
+    rising = (dead, *given, 1.0)
+    if len(given) not in (0, 3) or not all(low < high for low, high in zip(rising, rising[1:], strict=False)):
+        raise error(
+            f"duty_dead, duty_25, duty_50, duty_75 = {dead:g}, {', '.join(map(str, curve))}; needs three duties that rise "
+            "from the dead band to 1, or none of the three."
+        )

@@ -9,7 +9,7 @@ from ...errors import AnalysisError, PaddleError
 from ..arguments import choice
 from ..facts import card
 from ..shows_itself import ShowsItself
-from .constants import CONSTANTS, ROUNDINGS, in_range, unit_of
+from .constants import CONSTANTS, ROUNDINGS, check_duties, in_range, unit_of
 from .estimate import Estimate
 from .prediction import Prediction, predicted
 from .profile_file import write_profile
@@ -112,6 +112,7 @@ class PaddleProfile(ShowsItself):
             value = given if given is None and name in _MAY_BE_NONE else in_range(name, given, f"the profile {self.name}")
             if isinstance(given, str):
                 object.__setattr__(self, name, value)
+        check_duties(self, PaddleError)
         choice("rounding", self.rounding, ROUNDINGS, error=PaddleError)
         for estimate in self.estimates:
             _check_estimate(self, estimate)

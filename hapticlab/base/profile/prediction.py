@@ -158,8 +158,8 @@ class _Asked:
 def _moves(asked, name, span, spans):
     """Whether the answer depends on a constant: with all others at their own value, at their lower and at their upper ends."""
     for others in ({}, {one: s.low for one, s in spans.items()}, {one: s.high for one, s in spans.items()}):
-        answers = {asked(**{**others, name: at}) for at in (span.low, span.high)}
-        if len(answers) > 1 and not _alike(*answers):
+        low, own, high = (asked(**{**others, name: at}) for at in (span.low, span.value, span.high))
+        if not (_alike(low, own) and _alike(own, high)):
             return True
     return False
 

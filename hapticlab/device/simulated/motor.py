@@ -10,8 +10,6 @@ from ...compiler.ir.trace import minimum, select
 
 #: parts of the force at full duty, at the knots of the curve
 QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
-#: part of full duty
-MOST_DEAD = 0.5
 
 
 def knots(kind):
@@ -32,20 +30,6 @@ def knots(kind):
     if kind.duty_25 is None:
         return (dead, *(dead + part * (1 - dead) for part in QUARTERS[1:-1]), 1.0)
     return dead, kind.duty_25, kind.duty_50, kind.duty_75, 1.0
-
-
-def check_duties(kind, error):
-    """Refuse a dead band and a curve that no motor has; ``error`` is the class of the refusal."""
-    dead, curve = kind.duty_dead, (kind.duty_25, kind.duty_50, kind.duty_75)
-    if not 0 <= dead <= MOST_DEAD:
-        raise error(f"duty_dead = {dead!r}; needs a part of full duty from 0 to {MOST_DEAD:g}.")
-    given = [duty for duty in curve if duty is not None]
-    rising = (dead, *given, 1.0)
-    if len(given) not in (0, 3) or not all(low < high for low, high in zip(rising, rising[1:], strict=False)):
-        raise error(
-            f"duty_dead, duty_25, duty_50, duty_75 = {dead:g}, {', '.join(map(str, curve))}; needs three duties that rise "
-            "from the dead band to 1, or none of the three."
-        )
 
 
 def is_distorted(paddle):

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...base.arguments import number
 from ...base.missed_events import warn_of_missed
+from ...base.profile.constants import check_duties
 from ...base.profile.paddle_profile import PaddleProfile
 from ...base.telemetry import Telemetry
 from ...base.unusual import DEVICE, warn_of_unusual
@@ -22,13 +23,16 @@ from ..progress import progress_bar
 from .closed_loop import link, load_linked
 from .friction import ROUNDED_UP
 from .lanes import device_values
-from .motor import check_duties, is_distorted, knots
+from .motor import is_distorted, knots
 from .not_finite import not_finite
 from .plant import delay_parts, dynamics, plant_of
 from .transition import smallest_mass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ...base.annotations import Array, File, Number, PlantEngine
+    from ...base.profile.prediction import Prediction
     from ...compiler.ir.program import Program
     from ...scene.scene import Scene
 
@@ -225,6 +229,46 @@ class SimulatedPaddle(Paddle):
             arguments = ", ".join(f.name for f in fields(cls))
             raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle. The arguments are {arguments}.")
         return cls(**{**{name: a for name, a in known.items() if name in own}, "profile": profile, **changes})
+
+    def predict(self, question: Callable[..., Any], *args: Any, **options: Any) -> Prediction:
+        """Return the interval of a prediction for this paddle in its hand, over the intervals of its profile.
+
+        A constant that differs from the profile's, such as ``from_profile(twin, b=0.2)``, is taken as exact. All else is
+        as for :meth:`PaddleProfile.predict`.
+
+        Parameters
+        ----------
+        question : callable
+            Takes a paddle first, and returns a number, a Limit or an Estimate.
+        *args, **options
+            Passed on to it.
+
+        Returns
+        -------
+        Prediction
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> held = hl.SimulatedPaddle.from_profile("hapkit_rough", hand=hl.Hand("pinch"))
+        >>> print(held.predict(hl.stability_limit))
+        1205.06 N/m, between 898.87 and 1600.54
+          lowest with   delay high, sensor_delay high
+          highest with  delay low, sensor_delay low
+          it does not depend on coulomb
+          the other constants of the profile are taken as exact
+        """
+        if self.profile is None:
+            raise PaddleError(
+                "the paddle has no profile, so none of its constants has an interval. Make it of one: "
+                "hl.SimulatedPaddle.from_profile(twin, hand=...)"
+            )
+        usual = self.from_profile(self.profile)
+        own = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "profile"}
+        changes = {name: value for name, value in own.items() if value != getattr(usual, name)}
+        known = {one.name: changes.get(RENAMED.get(one.name, one.name)) for one in self.profile.estimates}
+        profile = self.profile.at(**{name: value for name, value in known.items() if value is not None})
+        return profile.predict(lambda one: question(self.from_profile(one, **changes), *args, **options))
 
     @property
     def velocity(self) -> str:
