@@ -8,30 +8,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
-from ..base.profile.constants import unit_of
 from ..base.profile.estimate import Estimate
 from ..base.profile.paddle_profile import PaddleProfile
 
 _MADE_UP = "illustrative: published for no paddle"
-#: seconds from sample to force of this firmware on an emulated Uno: median and most at 1 ms, and most at 0.4 ms
-_ON_AN_UNO = 190e-6, 190e-6, 277e-6, "docs/boards.md, measured on an emulated Uno"
-#: a filter of 0.7 kHz as a pure delay; the interval from none to twice that
-_KMA199 = 1 / (2 * math.pi * 700)
-_LAG = (
-    _KMA199,
-    0.0,
-    2 * _KMA199,
-    "filter of the KMA199's data sheet (NXP, Rev. 2, table 11, note 5); the interval is illustrative",
-)
-_FRICTION = 0.05, 0.02, 0.08, _MADE_UP
-#: what is typical of each kind beside what its profile says: value, low, high, source
+_ON_AN_EMULATED_UNO = "docs/boards.md, measured on an emulated Uno"
+_OF_THE_KMA199 = "filter of the KMA199's data sheet (NXP, Rev. 2, table 11, note 5); the interval is illustrative"
+#: time constant of that filter, 0.7 kHz [s], taken as a pure delay
+_LAG = 1 / (2 * math.pi * 700)
+#: from sample to force of this firmware: the median at 1 ms, and the most at 0.4 ms
+_UNO = Estimate("delay", 190e-6, 190e-6, 277e-6, "s", _ON_AN_EMULATED_UNO)
+_RUBS = Estimate("coulomb", 0.05, 0.02, 0.08, "N", _MADE_UP)
+_RUBS_MORE = Estimate("coulomb", 0.08, 0.03, 0.15, "N", _MADE_UP)
+#: what is typical of each kind beside what its profile says
 TYPICAL = {
-    "hapkit": {"coulomb": _FRICTION, "delay": _ON_AN_UNO, "sensor_delay": _LAG},
-    "hapkit_as5048a": {"coulomb": _FRICTION, "delay": _ON_AN_UNO},
-    "longhorn": {"coulomb": (0.08, 0.03, 0.15, _MADE_UP), "delay": _ON_AN_UNO},
-    "motor_shield": {"coulomb": (0.08, 0.03, 0.15, _MADE_UP), "delay": _ON_AN_UNO},
-    "eth": {"coulomb": (0.05, 0.02, 0.1, _MADE_UP), "delay": (0.2e-3, 0.1e-3, 0.5e-3, _MADE_UP)},
+    "hapkit": (_RUBS, _UNO, Estimate("sensor_delay", _LAG, 0.0, 2 * _LAG, "s", _OF_THE_KMA199)),
+    "hapkit_as5048a": (_RUBS, _UNO),
+    "longhorn": (_RUBS_MORE, _UNO),
+    "motor_shield": (_RUBS_MORE, _UNO),
+    "eth": (_RUBS, Estimate("delay", 0.2e-3, 0.1e-3, 0.5e-3, "s", _MADE_UP)),
 }
 #: counts per metre of a coarse encoder, and the factor by which one that is as coarse already is made coarser
 COARSE, COARSER = 1e4, 2.0
@@ -41,10 +38,9 @@ SLOW_T, SLOW_DELAY = 2e-3, 1e-3
 
 def rough(kind: PaddleProfile) -> PaddleProfile:
     """A paddle with the friction and the delays that are typical of its kind, each with an interval."""
-    told = TYPICAL[kind.name]
-    estimates = tuple(Estimate(name, *ends, unit_of(name), source) for name, (*ends, source) in told.items())
-    values = {one.name: one.value for one in estimates}
-    return replace(kind, **values, estimates=estimates, **_about(kind, "rough", "typical friction and delays"))
+    typical = TYPICAL[kind.name]
+    values: dict[str, Any] = {one.name: one.value for one in typical}
+    return replace(kind, **values, estimates=typical, **_about(kind, "rough", "typical friction and delays"))
 
 
 def coarse(kind: PaddleProfile) -> PaddleProfile:

@@ -77,8 +77,9 @@ class PaddleFit(Found):
             found.append(bounded("sensor_noise", self._noise(), source))
         if "scale" in self.estimates and base is not None and base.force_full:
             scale = self["scale"]
-            ends = (base.force_full * end for end in (scale.value, scale.low, scale.high))
-            found.append(bounded("force_full", Estimate("force_full", *ends, "N"), f"{source} of {base.name}'s"))
+            value, low, high = (base.force_full * end for end in (scale.value, scale.low, scale.high))
+            full = Estimate("force_full", value, low, high, "N")
+            found.append(bounded("force_full", full, f"{source}, as a part of that of {base.name}"))
         return found
 
     def _delays(self, source):

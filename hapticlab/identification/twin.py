@@ -66,19 +66,19 @@ def identify_twin(
     >>> unknown = hl.SimulatedPaddle.from_profile("hapkit", m=0.034, b=0.12, coulomb=0.05, noise=8e-6)
     >>> found = hl.identify.paddle(unknown, kinds=("steps",))
     >>> twin = hl.identify.twin("bench 7", found, base="hapkit")
-    >>> 0.034 in twin["m"], 0.05 in twin["coulomb"], 8e-6 in twin["sensor_noise"], twin.force_max
-    (True, True, True, 3.3)
+    >>> 0.034 in twin["m"], 0.05 in twin["coulomb"], twin.force_max
+    (True, True, 3.3)
     >>> 240.0 in twin.predict(hl.passivity_limit)  # 2 b/T of the true paddle [N/m]
     True
     """
-    base, day = _base(base), date or calendar.today().isoformat()
+    rest, day = _base(base), date or calendar.today().isoformat()
     estimates: dict[str, Estimate] = {}
     for one in found:
         if not hasattr(one, "as_constants"):
             raise AnalysisError(
                 f"hl.identify.twin was given {what_is(one)}; needs what hl.identify.paddle, handle or motor found of a paddle"
             )
-        for constant in one.as_constants(base):
+        for constant in one.as_constants(rest):
             if constant.name in estimates:
                 raise AnalysisError(
                     f"hl.identify.twin: {constant.name} was found twice. Identify all records together, "
@@ -87,7 +87,7 @@ def identify_twin(
             estimates[constant.name] = replace(constant, source=f"{constant.source}, {day}")
     texts = {text: constants.pop(text) for text in ("rounding", "wiring") if text in constants}
     estimates |= {known: exact(known, value, f"given, {day}") for known, value in constants.items()}
-    return _profile(name, base, estimates, texts)
+    return _profile(name, rest, estimates, texts)
 
 
 def _profile(name, base, estimates, texts):
@@ -114,7 +114,7 @@ def exact(name: str, value: Any, source: str) -> Estimate:
 def bounded(name: str, found: Estimate, source: str) -> Estimate:
     """An estimate as a constant of a paddle, no part of its interval outside the constant's range."""
     limits = CONSTANTS[name][1]
-    least, most = limits.get("least", limits.get("above")), limits.get("most", math.inf)
+    least, most = limits.get("least", limits.get("above", 0.0)), limits.get("most", math.inf)
     value, low, high = (min(max(end, least), most) for end in (found.value, found.low, found.high))
     return Estimate(name, value, low, high, unit_of(name), source)
 
@@ -128,7 +128,11 @@ def _base(given):
         return given
     if not hasattr(given, "run"):
         return named_profile(given)
-    profile = given.profile
+    settings = getattr(given, "settings", None)
+    profile = settings.profile(given.T) if settings is not None else getattr(given, "profile", None)
     if profile is None:
-        raise AnalysisError("hl.identify.twin: the paddle given as base= has no profile. Give one, as base='hapkit'")
+        raise AnalysisError(
+            "hl.identify.twin: the paddle given as base= has no profile, or its board no calibration. Give a profile, such as "
+            "base='hapkit', or calibrate the board"
+        )
     return profile

@@ -11,7 +11,7 @@ from ..arguments import number
 MOST_DEAD = 0.5
 _SOME, _NO_LESS, _DUTY = {"above": 0.0}, {"least": 0.0}, {"above": 0.0, "most": 1.0}
 #: constant -> its unit, "1" without one, and the range of its values
-CONSTANTS: dict[str, tuple[str, dict[str, float]]] = {
+CONSTANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "m": ("kg", _SOME),
     "b": ("N s/m", _NO_LESS),
     "coulomb": ("N", _NO_LESS),

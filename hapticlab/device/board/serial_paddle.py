@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ...base.annotations import Number
-    from ...base.profile.paddle_profile import PaddleProfile
     from ...base.telemetry import Telemetry
     from ...compiler.boards.cost import Cost
     from ...scene.scene import Scene
@@ -123,11 +122,6 @@ class SerialPaddle(Paddle):
     def device(self) -> Device:
         """The constants that the board stores, for limits."""
         return Device(T=self.T) if self.settings is None else self.settings.device(self.T)
-
-    @property
-    def profile(self) -> PaddleProfile | None:
-        """The constants that the board stores, for simulated paddles; None for a board without a calibration."""
-        return None if self.settings is None else self.settings.profile(self.T)
 
     def accept(self, program: Program) -> Program:
         check_room(self.board, self.settings, program)
