@@ -132,7 +132,7 @@ def _added(path, made):
     """Put a wheel of PyPI into the archive, and return its entry of the lock file."""
     with ZipFile(path) as wheel:
         files = [name for name in wheel.namelist() if not name.endswith((".so", "/"))]
-        compiled = len(files) < len([name for name in wheel.namelist() if name[-1] != "/"])
+        compiled = any(name.endswith(".so") for name in wheel.namelist())
         metadata, _ = parse_email(wheel.read(next(name for name in files if name.endswith(".dist-info/METADATA"))))
         to = made / (re.sub(r"-cp\d+-cp\d+-.*", "-py3-none-any.whl", path.name) if compiled else path.name)
         if compiled:
