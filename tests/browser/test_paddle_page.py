@@ -32,14 +32,12 @@ AROUND = """async ([wasm, store, known]) => {
   window.ticks = (most = 30) => {
     begun = Math.max(begun, performance.now() - 1000 * board.time - most)
     board.run((performance.now() - begun) / 1000)
-    return board.ticks
   }
   // Plug a board in whose handle is at 0, as another host said.
   window.plugIn = () => {
     Object.assign(board, { sensor: (counts) => counts, beyond: false, hand: 0, x: 0, v: 0 })
     board.reset()
     window.port = serial.port = new FakePort(board)
-    port.beforeTake = () => ticks()
     board.tick()
     for (const [name, values] of [["HELLO", [9]], ["HOME", [0]]]) board.core.receive(encodeFrame(name, 1, values, { session: 9 }))
     board.core.transmit()
@@ -54,7 +52,11 @@ DOCUMENT, WINDOW = "frame.contentDocument", "frame.contentWindow"
 SEEN = f"""delete {DOCUMENT}.hidden
   {DOCUMENT}.dispatchEvent(new Event('visibilitychange'))
   {DOCUMENT}.querySelector('#hl-scene').selectedIndex = 0"""
-IN_FRAME = "if (parent !== window) Object.defineProperty(navigator, 'serial', { get: () => parent.serial })"
+#: in the paddle's page before its own scripts: the fake, and the board's tick of a press
+IN_FRAME = """if (parent !== window) {
+  Object.defineProperty(navigator, "serial", { get: () => parent.serial })
+  for (const kind of ["pointerdown", "keydown"]) addEventListener(kind, () => (parent.tick = parent.board.ticks), true)
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -138,14 +140,14 @@ class Bench:
     def off_after(self, work, rest=250):
         """Do something, a text for the page around or a call; return the board's time until its motor was off [s].
 
-        It counts from ``window.tick``, where what is done sets it, else from just before.
+        It counts from just before; for a call, from when an event in the page sets ``window.tick``.
         """
-        before = self.page.evaluate("() => (window.tick = ticks())")
         if callable(work):
+            self.page.evaluate("() => { window.tick = Infinity }")
             work(self)
         else:
-            self.page.evaluate(f"async () => {{ window.tick = ticks(); {work} }}")
-        self.until(f"board.ticks > {before} + {rest}")
+            self.page.evaluate(f"async () => {{ window.tick = board.ticks; {work} }}")
+        self.until(f"board.ticks > tick + {rest}")
         off = self.page.evaluate("board.offAfter(tick)")
         assert off is not None, self.status()
         return off
@@ -204,10 +206,6 @@ def test_a_wall_is_felt_and_every_way_to_stop_stops_it(bench, tmp_path):
     heard = page.evaluate("port.sent.length")
     bench.until(f"port.sent.length > {heard} + 8")  # heartbeats go on by themselves
 
-    # the board's tick at the press: nobody else hears of it first
-    page.evaluate(
-        f"['pointerdown', 'keydown'].map((kind) => {WINDOW}.addEventListener(kind, () => (window.tick = ticks()), true))"
-    )
     stops = {
         "button": lambda _: frame.locator("#hl-stop").click(), "Space": lambda _: page.keyboard.press(" "),
         "Esc": lambda _: page.keyboard.press("Escape"), "P": lambda _: page.keyboard.press("p"),
@@ -234,6 +232,7 @@ FREEZE = "const counts = Math.round(board.x / board.known.metres_per_count); boa
 HAPPENS = {
     "page hidden": (HIDE, 0.005, "The page was hidden"),
     "page frozen by the browser": (f"{DOCUMENT}.dispatchEvent(new Event('freeze'))", 0.005, "The page was hidden"),
+    "page about to be left": (f"{WINDOW}.dispatchEvent(new Event('pagehide'))", 0.005, "Disconnected."),
     "page blocked": (
         "for (const until = performance.now() + 300; performance.now() < until; ) {} ticks(300)",
         SILENT,
@@ -288,10 +287,10 @@ OTHER = """() => {
   }
 }"""
 LEAVE = f"""const gone = new Promise((done) => frame.addEventListener('load', done, {{ once: true }}))
-  {WINDOW}.addEventListener('pagehide', () => {{ window.tick = ticks() }}, true)
+  {WINDOW}.addEventListener('pagehide', () => {{ window.tick = board.ticks }}, true)
   frame.src = '/gone'
   await gone"""
-THROW = "setTimeout(() => { parent.tick = parent.ticks(); throw new Error('a mistake') })"
+THROW = "setTimeout(() => { parent.tick = parent.board.ticks; throw new Error('a mistake') })"
 
 
 @pytest.mark.wide

@@ -80,7 +80,6 @@ class FakePort extends EventTarget {
   take(bytes) {
     this.sent.push(bytes)
     if (this.stuck) return new Promise(() => {})
-    if (this.beforeTake) this.beforeTake() // the board's time goes on to now
     if (this.board.powered) this.board.core.receive(this.onWay(bytes))
     this.deliver()
     return undefined
