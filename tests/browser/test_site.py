@@ -90,6 +90,7 @@ def points(path, capsys):
 
 
 @pytest.mark.wide
+@pytest.mark.long
 def test_a_site_has_the_labs_what_they_need_and_a_licence_text_for_every_file(built):
     made, said = built
     found = {path.relative_to(made.folder).as_posix(): path for path in made.folder.rglob("*") if path.is_file()}

@@ -133,6 +133,7 @@ def case(*words):
     return pytest.param(*words, id="-".join(words), marks=pytest.mark.wide if words in WIDE else pytest.mark.slow)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("state, number", [case(s, n) for n in LABS for s in ("untouched_lab", "solved_lab")])
 def test_a_lab_earns_and_prints_the_same(state, number):
     browser, desktop = there(state, number), here(state, number)
