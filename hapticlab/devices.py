@@ -7,6 +7,9 @@ A profile is a set of published or measured constants, and says which:
 >>> paddle.m, hl.devices.profile("hapkit").nominal
 (0.03, True)
 
+``profile("hapkit_rough")`` has typical friction and delays with intervals, ``profile("bench7.json")`` is what
+``hl.identify.twin`` found of one paddle and ``save`` wrote, and ``predict`` gives the interval of a limit on either.
+
 Next: ``hl.connect()`` opens a board, ``hl.doctor()`` checks it, ``hl.identify.paddle`` measures its constants.
 """
 

@@ -28,8 +28,8 @@ def test_hapkit_count():
 def test_the_labs_hapkit_is_what_it_was():
     """Its lag, noise, flight, friction and dead band stay out of it; the labs' numbers are of this paddle."""
     assert (hapkit.m, hapkit.b, hapkit.counts_per_metre, hapkit.force_max, hapkit.T) == (0.03, 0.10, 1 / 12.8e-6, 3.3, 1e-3)
-    left_out = hapkit.sensor_delay, hapkit.sensor_noise, hapkit.sensor_flight, hapkit.duty_dead, hapkit.coulomb
-    assert left_out == (0.0,) * 5 and hapkit.duty_25 is None
+    left_out = hapkit.sensor_delay, hapkit.sensor_noise, hapkit.sensor_flight, hapkit.duty_dead, hapkit.coulomb, hapkit.delay
+    assert left_out == (0.0,) * 6 and hapkit.duty_25 is None and hapkit.estimates == ()
 
 
 def test_travel_of_a_turn_from_published_radii():

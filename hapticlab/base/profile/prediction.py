@@ -38,14 +38,21 @@ class Prediction(ShowsItself):
 
     Attributes
     ----------
-    value, low, high : float
-        With all constants at their own value, and the least and the largest answer.
+    value : float
+        With all constants at their own value.
+    low : float
+        Least answer.
+    high : float
+        Largest answer.
     unit : str
-    at_low, at_high : PaddleProfile
-        The profiles with the least and the largest answer: of a question in which less is worse, as for the stiffest
-        wall, ``at_low`` is the cautious paddle.
-    low_ends, high_ends : dict of str to str
-        Constant -> the end of its interval, "low" or "high", at which the answer is least and largest.
+    at_low : PaddleProfile
+        Profile with the least answer. Where less is worse, as for the stiffest wall, it is the cautious paddle.
+    at_high : PaddleProfile
+        Profile with the largest answer.
+    low_ends : dict of str to str
+        End of the interval, "low" or "high", at which the answer is least, by constant.
+    high_ends : dict of str to str
+        End at which the answer is largest, by constant.
     unmoved : tuple of str
         Constants with an interval on which the answer does not depend.
     not_monotone : tuple of str
@@ -108,9 +115,9 @@ def predicted(profile, question, args, options):
         )
     for values in product(*levels.values()):
         asked(**dict(zip(levels, values, strict=True)))
-    least, largest = (end(asked.answers, key=asked.answers.get) for end in (min, max))
+    least, largest = (_of(end(asked.answers, key=asked.answers.get), moving) for end in (min, max))
     return Prediction(
-        value, asked.answers[least], asked.answers[largest], asked.unit, asked.at(least), asked.at(largest),
+        value, asked(**dict(least)), asked(**dict(largest)), asked.unit, asked.at(least), asked.at(largest),
         _named(least, moving, spans), _named(largest, moving, spans), tuple(name for name in spans if name not in moving),
         tuple(mixed),
     )  # fmt: skip
@@ -153,6 +160,11 @@ class _Asked:
             )
         self.unit = getattr(given, "unit", "")
         return answer
+
+
+def _of(key, names):
+    """The constants of an answer that matter for it, with their values."""
+    return tuple((name, value) for name, value in key if name in names)
 
 
 def _moves(asked, name, span, spans):
