@@ -24,7 +24,7 @@ LONG_SILENCE = 60.0
 GAP, STEADY = 1.0, 0.5
 ENDED = "This view has ended; run its cell again."
 #: where there are no threads: what a page says waits for the cell that runs, and frames go on where that cell awaits
-A_CELL_RUNS = "A cell is running, so this view hears the pointer, keys and buttons only after the cell"
+A_CELL_RUNS = "A cell is running, so the pointer, keys and buttons take effect only after the cell"
 
 
 class Session:

@@ -8,8 +8,8 @@ from ..device.turns import has_threads
 from ..errors import PaddleError
 
 ONE_THREAD = (
-    "In this browser a view and a cell take turns: while a cell computes the view stands still, and while a cell awaits the "
-    "view goes on but hears nothing from you."
+    "In this browser, views and cells take turns. While a cell computes, the view stands still. While a cell awaits, the view "
+    "continues, but your input takes effect only after the cell."
 )
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from axe import findings
-from lab import ask, grab, picture, run_all, run_cell, see
+from lab import ask, grab, picture, run_all, run_cell, see, until
 from pyodide_archive import archive
 from sites import open_lab, served, visited
 
@@ -20,7 +20,9 @@ from hapticlab.course.labs import find_labs
 from hapticlab.site.build import RECORD, build_site
 from hapticlab.site.licences import parts, without_text
 from hapticlab.site.pages import PAGES
+from hapticlab.widgets.session import A_CELL_RUNS
 
+STATUS = ".hl-status"
 ANSWERS = Path(__file__).parents[1] / "instructor"
 FIRST = "import numpy as np"
 # Counts the pictures that differ from the one before, from now on.
@@ -83,6 +85,13 @@ def download(page, folder):
     return path
 
 
+def begin(page, code):
+    """Have the kernel run code, and wait for nothing."""
+    page.evaluate(
+        "(code) => void window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.requestExecute({ code })", code
+    )
+
+
 def points(path, capsys):
     """What `hapticlab grade` says of a notebook of lab 02."""
     assert main(["grade", str(path), "--instructor", str(ANSWERS), "--sandbox", "namespaces"]) == 0
@@ -132,6 +141,7 @@ def test_a_view_moves_in_the_browser(complete, browser, site, scheme):
         open_lab(page, site, "02")
         for beginning in (FIRST, "wall = hl.wall()", "view = hl.live(paddle"):
             run_cell(page, beginning)
+        page.wait_for_selector(".hl-stage")
         see(page, ".hl-stage")
         x, y = grab(page, ".hl-stage")
         page.evaluate(COUNT)
@@ -144,6 +154,25 @@ def test_a_view_moves_in_the_browser(complete, browser, site, scheme):
         assert page.evaluate("() => document.body.dataset.jpThemeLight") == ("true" if scheme == "light" else "false")
         print(f"{1000 * shown['pictures'] / (shown['until'] - shown['from']):.1f} frames/s")
         assert shown["pictures"] >= 60  # in about 4 s; a view that hangs has 1
+
+
+@pytest.mark.slow
+def test_a_view_and_cells_take_turns(page, site):
+    """A scene goes on while a cell awaits, which holds the pointer back; a cell that computes is told, meanwhile and after it."""
+    open_lab(page, site, "02")
+    for beginning in (FIRST, "wall = hl.wall()", "view = hl.live(paddle"):
+        run_cell(page, beginning)
+    page.wait_for_selector(".hl-stage")
+    see(page, ".hl-stage")
+    until(page, STATUS, "Running")
+    ticks = "view._session.source.ticks"
+    begin(page, f"import asyncio, time\nbefore = {ticks}\nawait asyncio.sleep(4)\nran = {ticks} - before")
+    until(page, STATUS, A_CELL_RUNS)
+    assert ask(page, "print(ran > 1000)") == "True"
+    begin(page, "until = time.monotonic() + 4\nwhile time.monotonic() < until:\n    pass")
+    until(page, STATUS, "It is busy with a cell. Nothing moves until it answers.")
+    until(page, STATUS, "A cell computed for 4.")
+    until(page, STATUS, "Running")
 
 
 @pytest.mark.slow

@@ -45,7 +45,7 @@ def test_a_view_takes_turns_with_cells():
     pushed, computed, awaits, ended = run_in_pyodide(VIEW).splitlines()
     assert pushed == "pushed True"
     assert "A cell computed for 1." in computed and computed.endswith("s: time stood still.")
-    assert awaits == "A cell is running, so this view hears the pointer, keys and buttons only after the cell. True"
+    assert awaits == "A cell is running, so the pointer, keys and buttons take effect only after the cell. True"
     assert ended == "None"
 
 

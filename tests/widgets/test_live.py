@@ -745,7 +745,7 @@ def test_many_threads_may_say_what_they_like(both):
 def test_without_threads_a_simulation_goes_on_while_a_cell_awaits_and_says_that_it_hears_nothing(one_thread):
     stage = Stage().open()
     stage.go(0.5)
-    assert "hears the pointer" not in stage.session.status
+    assert A_CELL_RUNS not in stage.session.status
     before = stage.session.source.ticks
     for _ in range(5 * 60):  # the cell lets turns through, and no word of the page
         stage.now += 1 / 60
@@ -811,7 +811,7 @@ def test_time_without_a_view_is_no_cell(one_thread):
 
 def test_a_view_says_beforehand_what_a_cell_does_to_it(one_thread, monkeypatch):
     told = Session(PADDLE, WALL, in_thread=False).description()["help"]
-    assert "while a cell computes the view stands still" in told
+    assert "While a cell computes, the view stands still" in told
     monkeypatch.undo()
     assert "cell" not in Session(PADDLE, WALL, in_thread=False).description()["help"]
 

@@ -33,9 +33,9 @@ KNOWN = {(usb.vendor, usb.product): usb.words for board in BOARDS.values() for u
 
 #: what somebody can do whose Python a browser runs
 IN_A_BROWSER = (
-    'Python in a browser opens no serial ports. Use a simulated paddle: hl.connect("sim://hapkit") runs its firmware, and '
-    'hl.SimulatedPaddle.from_profile("hapkit") needs none. A paddle on a cable needs hapticlab on a computer (pip install '
-    "hapticlab), or without Python the page paddle.html of a site that `hapticlab site` made"
+    'Python in a browser cannot open serial ports. Use a simulated paddle: hl.connect("sim://hapkit") runs its firmware, and '
+    'hl.SimulatedPaddle.from_profile("hapkit") needs none. For a real paddle, install hapticlab on a computer (pip '
+    "install hapticlab), or open paddle.html of a site made by `hapticlab site`, a page that needs no Python"
 )
 
 
