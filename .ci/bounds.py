@@ -24,7 +24,7 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
-PYTHONS, EXTRAS = ("3.11", "3.12", "3.13", "3.14"), ("notebook", "test", "bench")
+PYTHONS, EXTRAS = ("3.11", "3.12", "3.13", "3.14"), ("notebook", "site", "test", "bench")
 PLATFORMS = ("x86_64-manylinux_2_28", "aarch64-manylinux_2_28", "windows", "aarch64-pc-windows-msvc", "aarch64-apple-darwin",
              "x86_64-apple-darwin")  # fmt: skip
 WHEELS = ("--only-binary", ":all:", "--no-binary", "pydy")

@@ -4,7 +4,7 @@ import json
 import threading
 from contextlib import contextmanager
 from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler, SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 from lab import SECONDS
 
@@ -15,17 +15,13 @@ class Quiet(SimpleHTTPRequestHandler):
 
 
 @contextmanager
-def served(folder):
-    """Serve a folder on a free port, and give its address; JupyterLite's application is where scripts find it."""
-    path = folder / "jupyter-lite.json"
-    settings = json.loads(path.read_text("utf-8"))
-    settings["jupyter-config-data"]["exposeAppInBrowser"] = True
-    path.write_text(json.dumps(settings), "utf-8")
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=folder))
+def serving(handler):
+    """Run a server on a free port of this computer."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
     thread = threading.Thread(target=server.serve_forever)
     thread.start()
     try:
-        yield f"http://127.0.0.1:{server.server_port}"
+        yield server
     finally:
         server.shutdown()
         thread.join()
@@ -33,23 +29,56 @@ def served(folder):
 
 
 @contextmanager
-def visited(browser, address, *, width=1280, height=900, **options):
-    """Give a page of a new visitor; a request beyond the address is refused, and fails at the end."""
-    context, beyond = browser.new_context(viewport={"width": width, "height": height}, **options), []
+def served(folder):
+    """Serve a folder, and give its address; scripts of a test find JupyterLite's application in its pages."""
+    path = folder / "jupyter-lite.json"
+    settings = json.loads(path.read_text("utf-8"))
+    settings["jupyter-config-data"]["exposeAppInBrowser"] = True
+    path.write_text(json.dumps(settings), "utf-8")
+    with serving(partial(Quiet, directory=folder)) as server:
+        yield f"http://127.0.0.1:{server.server_port}"
 
-    def judge(route):
-        if route.request.url.startswith((address, "data:", "blob:")):
-            route.continue_()
-        else:
-            beyond.append(route.request.url)
-            route.abort()
 
-    context.route("**/*", judge)
-    page = context.new_page()
-    page.set_default_timeout(2000 * SECONDS)
-    yield page
-    context.close()
-    assert not beyond, f"requests beyond the site: {beyond}"
+#: where Chromium itself asks how to fill in forms; no page can
+OF_THE_BROWSER = {"content-autofill.googleapis.com:443"}
+
+
+class Refusing(BaseHTTPRequestHandler):
+    """A proxy that refuses everything, and notes what was asked."""
+
+    def refuse(self):
+        if self.path not in OF_THE_BROWSER:
+            self.server.asked.append(self.path)
+        self.send_error(403)
+
+    do_CONNECT = do_GET = do_POST = do_HEAD = refuse
+
+    def log_message(self, *_):
+        pass
+
+
+@contextmanager
+def watched(browser, *, width=1280, height=900, **options):
+    """Give a page of a new visitor, and the list of what it asks beyond this computer, all of which is refused.
+
+    A proxy notes these, since it also sees what workers ask, and the service worker of a site.
+    """
+    with serving(Refusing) as proxy:
+        proxy.asked = []
+        way = {"server": f"http://127.0.0.1:{proxy.server_port}", "bypass": "127.0.0.1"}
+        context = browser.new_context(viewport={"width": width, "height": height}, proxy=way, **options)
+        page = context.new_page()
+        page.set_default_timeout(1000 * SECONDS)
+        yield page, proxy.asked
+        context.close()
+
+
+@contextmanager
+def visited(browser, **options):
+    """Give a page of a new visitor; a request that would leave this computer is refused, and fails at the end."""
+    with watched(browser, **options) as (page, asked):
+        yield page
+    assert not asked, f"requests beyond the site: {asked}"
 
 
 def open_lab(page, address, number):

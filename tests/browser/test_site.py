@@ -11,7 +11,7 @@ import pytest
 from axe import findings
 from lab import ask, grab, picture, run_all, run_cell, see, until
 from pyodide_archive import archive
-from sites import open_lab, served, visited
+from sites import open_lab, served, visited, watched
 
 import hapticlab as hl
 from hapticlab.cli.main import main
@@ -59,7 +59,7 @@ def site(built):
 
 @pytest.fixture
 def page(complete, browser, site):
-    with visited(browser, site) as opened:
+    with visited(browser) as opened:
         yield opened
 
 
@@ -134,10 +134,25 @@ def test_the_first_cell_of_every_lab_runs_as_it_is(page, site, lab):
     assert seen == f"/drive/{lab.name} {lab.notebook.name} checks.py {hl.__version__}"  # so that a check reads the lab's own
 
 
+@pytest.mark.wide
+def test_no_request_beyond_the_site_stays_unseen(complete, browser, site):
+    with watched(browser) as (page, asked):
+        page.goto(f"{site}/index.html")
+        page.evaluate("() => fetch('http://elsewhere.example/a').catch(() => {})")
+        worker = "fetch(`https://elsewhere.example/b`).catch(() => postMessage(1))"
+        page.evaluate(
+            """(code) => new Promise((done) => {
+                new Worker(URL.createObjectURL(new Blob([code]))).onmessage = () => done()
+            })""",
+            worker,
+        )
+    assert asked[0] == "http://elsewhere.example/a" and set(asked[1:]) == {"elsewhere.example:443"}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_view_moves_in_the_browser(complete, browser, site, scheme):
-    with visited(browser, site, color_scheme=scheme) as page:
+    with visited(browser, color_scheme=scheme) as page:
         open_lab(page, site, "02")
         for beginning in (FIRST, "wall = hl.wall()", "view = hl.live(paddle"):
             run_cell(page, beginning)
@@ -225,7 +240,7 @@ def test_a_scene_of_the_first_page_moves_at_once_without_python(page, site):
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [390, 1280])
 def test_the_first_page_is_usable_by_everybody(complete, browser, site, width, scheme):
-    with visited(browser, site, width=width, color_scheme=scheme) as page:
+    with visited(browser, width=width, color_scheme=scheme) as page:
         page.goto(f"{site}/index.html")
         assert findings(page, "body") == []
         assert page.evaluate("() => document.documentElement.scrollWidth <= window.innerWidth")
