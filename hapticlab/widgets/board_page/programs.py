@@ -17,6 +17,7 @@ from ...scene.laws.chapter_laws import wall
 from ...scene.notation.symbols import n, parameters, when, x
 from ...scene.scene import Scene
 from ..browser_view import about
+from ..picture import moving_picture
 from ..shared.page_data import parameters_told
 from ..stage import MOTOR_OFF, Stage
 from ..status_words import NOTICED
@@ -102,8 +103,15 @@ def page_data(boards=("uno", "pico"), chosen=None):
 def scene_data(choice, boards):
     """Return a scene with its program for each board that carries it, or None where none does."""
     found = {board: told for board in boards for told in [_on_board(choice, board)] if told}
+    if not found:
+        return None
     where = " and ".join(BOARDS[board].flashing.called if BOARDS[board].flashing else board for board in found)
-    return found and {"name": choice.name, "title": choice.title, "about": f"{choice.about}It fits {where}.", "boards": found}
+    picture = moving_picture(choice.scene)
+    return {
+        **{"name": choice.name, "title": choice.title, "about": f"{choice.about}It fits {where}.", "boards": found},
+        "picture": picture.recording(),
+        "touching": recorded_touching(choice.scene, {**choice.scene.watch, **picture.channels}),
+    }
 
 
 def _on_board(choice, board):
@@ -137,8 +145,6 @@ def _told(choice, board, *, T, **options):
         "watched": [c.name for c in program.outputs[1:]],
         "parameters": parameters_told(program),
         "about": {**shown, **apart, "help": shown["help"] + HELP},
-        "picture": stage.picture.recording(),
-        "touching": recorded_touching(stage.scene, stage.scene.watch),
         "record": {"units": program.units, "scene": program.name},
     }
 

@@ -57,8 +57,9 @@ async function bench({ store = asked.stores.usual, scene = "wall" } = {}) {
       return b.paddle.open()
     }))
     if (opened?.problem) return opened.problem.message
-    const told = asked.data.scenes.find(({ name }) => name === scene).boards.host
-    const options = { picture: new page.Drawing(told.picture), touching: page.touchingOf(told.touching), save: () => "kept", clock }
+    const { boards, picture, touching } = asked.data.scenes.find(({ name }) => name === scene)
+    const told = boards.host
+    const options = { picture: new page.Drawing(picture), touching: page.touchingOf(touching), save: () => "kept", clock }
     b.source = new page.BoardSource(told, asked.data.words, b.paddle, { ...options, gesture: () => b.pressed() })
     b.source.open(b.view)
     b.source.show(true)

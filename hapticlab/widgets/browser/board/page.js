@@ -130,8 +130,8 @@ class PaddlePage {
     if (this.paddle.obstacle) return undefined
     if (!told) return this.say(`This scene does not fit the board ${this.paddle.board.name}. Choose another one.`)
     this.source = new BoardSource(told, this.data.words, this.paddle, {
-      picture: new Drawing(told.picture),
-      touching: touchingOf(told.touching),
+      picture: new Drawing(scene.picture),
+      touching: touchingOf(scene.touching),
       save: (log) => keepRecord(log, { ...told.record, ...this.paddle.record }),
       gesture: pressedAt,
       clock: this.clock,
