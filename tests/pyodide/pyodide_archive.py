@@ -74,6 +74,11 @@ def _complete(folder):
     missing = [name for name in (LOCK, *CORE) if not (folder / name).is_file()]
     if missing:
         raise NoPyodideError(f"{NAMED} is {folder}, which has no {', '.join(missing)}. Give a folder of Pyodide.")
+    pinned = re.findall(r"^([\w-]+)==", PINS[2].read_text("utf-8"), re.M)
+    packages = json.loads((folder / LOCK).read_text("utf-8"))["packages"]
+    missing = sorted({*OFFICIAL, *pinned} - {"open-webui", *packages})
+    if missing:
+        raise NoPyodideError(f"{NAMED} is {folder}, whose {LOCK} does not list {', '.join(missing)}. Add these packages.")
     return folder
 
 

@@ -19,6 +19,15 @@ def fresh():
 
 
 @pytest.mark.wide
+def test_a_folder_that_is_named_is_used_as_it_is(fresh, monkeypatch):
+    made = archive()
+    archive.cache_clear()
+    monkeypatch.setattr(pyodide_archive, "_make", None)
+    monkeypatch.setenv(NAMED, str(made))
+    assert archive() == made
+
+
+@pytest.mark.wide
 def test_the_archive_holds_what_its_lock_file_lists_and_what_hapticlab_needs():
     folder = archive()
     packages = json.loads((folder / LOCK).read_text("utf-8"))["packages"]
@@ -35,9 +44,11 @@ def test_a_folder_that_is_no_pyodide_is_named(fresh, tmp_path, monkeypatch):
     monkeypatch.setenv(NAMED, str(tmp_path))
     with pytest.raises(NoPyodideError, match=f"{NAMED} is .*, which has no {LOCK}, pyodide.mjs.* Give a folder of Pyodide"):
         archive()
-    for name in (LOCK, *CORE):
+    for name in CORE:
         (tmp_path / name).touch()
-    assert archive() == tmp_path.resolve()
+    (tmp_path / LOCK).write_text('{"packages": {"numpy": {}}}')
+    with pytest.raises(NoPyodideError, match=f"whose {LOCK} does not list anywidget, .* scipy, .*. Add these packages"):
+        archive()
 
 
 def test_without_a_network_one_sentence_says_what_to_do(fresh, tmp_path, monkeypatch):
