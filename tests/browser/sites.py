@@ -8,10 +8,20 @@ from http.server import BaseHTTPRequestHandler, SimpleHTTPRequestHandler, Thread
 
 from lab import SECONDS
 
+from hapticlab.site.lite import KERNEL
+
 
 class Quiet(SimpleHTTPRequestHandler):
     def log_message(self, *_):
         pass
+
+
+class Open(Quiet):
+    """Files that pages of other addresses may read, as at the address of Pyodide."""
+
+    def end_headers(self):
+        self.send_header("Access-Control-Allow-Origin", "*")
+        super().end_headers()
 
 
 @contextmanager
@@ -29,11 +39,16 @@ def serving(handler):
 
 
 @contextmanager
-def served(folder):
-    """Serve a folder, and give its address; scripts of a test find JupyterLite's application in its pages."""
+def served(folder, pyodide=None):
+    """Serve a site, and give its address; scripts of a test find JupyterLite's application in its pages.
+
+    ``pyodide`` is an address that takes the place of Pyodide's own.
+    """
     path = folder / "jupyter-lite.json"
     settings = json.loads(path.read_text("utf-8"))
     settings["jupyter-config-data"]["exposeAppInBrowser"] = True
+    if pyodide:
+        settings["jupyter-config-data"]["litePluginSettings"][KERNEL]["pyodideUrl"] = f"{pyodide}/pyodide.mjs"
     path.write_text(json.dumps(settings), "utf-8")
     with serving(partial(Quiet, directory=folder)) as server:
         yield f"http://127.0.0.1:{server.server_port}"

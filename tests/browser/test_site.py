@@ -5,13 +5,14 @@ Nothing but the site may be asked: every request beyond its address is refused a
 
 import json
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
 from axe import findings
 from lab import ask, grab, picture, run_all, run_cell, see, until
 from pyodide_archive import archive
-from sites import open_lab, served, visited, watched
+from sites import Open, open_lab, served, serving, visited, watched
 
 import hapticlab as hl
 from hapticlab.cli.main import main
@@ -147,6 +148,27 @@ def test_no_request_beyond_the_site_stays_unseen(complete, browser, site):
             worker,
         )
     assert asked[0] == "http://elsewhere.example/a" and set(asked[1:]) == {"elsewhere.example:443"}
+
+
+@pytest.mark.slow
+def test_by_default_python_comes_from_an_address_of_its_own_and_the_rest_from_the_site(complete, browser, tmp_path):
+    """Another server plays the address of Pyodide, which no test asks; it has more packages than a page may ask for."""
+    build_site(tmp_path / "site", say=lambda words: None)
+    asked = []
+
+    class Pyodide(Open):
+        def do_GET(self):
+            asked.append(self.path)
+            super().do_GET()
+
+    with serving(partial(Pyodide, directory=archive())) as other:
+        pyodide = f"http://127.0.0.1:{other.server_port}"
+        with served(tmp_path / "site", pyodide) as address, visited(browser) as page:
+            open_lab(page, address, "02")
+            assert "m = 0.03 kg" in run_cell(page, FIRST)
+    assert {"/pyodide.mjs", "/pyodide.asm.wasm", "/pyodide-lock.json"} <= set(asked)
+    assert {"numpy", "scipy", "sympy"} <= {path[1:].partition("-")[0] for path in asked}
+    assert not {path for path in asked if path.startswith(("/pint-", "/anywidget-", "/hapticlab-"))}
 
 
 @pytest.mark.slow
