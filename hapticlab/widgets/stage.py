@@ -199,7 +199,7 @@ class Stage:
         self.motion.pass_at(self.slow_speed if self.motion.speed != self.slow_speed else usual)
 
     def resume(self):
-        if self._lost:
+        if self._lost or (self.source.fault and self.source.kind == "simulated"):
             self.start()
             return
         self._wants_to_run = self.source.kind == "simulated"

@@ -5,6 +5,7 @@ import numpy as np
 from ..analysis.records.chatter import SHORTEST, chatter
 from ..base.telemetry import Telemetry
 from ..errors import AnalysisError
+from .pace import TOLD
 
 #: a hand moves slower than this, chatter is faster [Hz]; and larger than this [m]
 SLOWEST, SMALLEST = 8.0, 2e-5
@@ -66,10 +67,10 @@ def chatter_words(x, F, T):
 
 
 def late_words(behind):
-    """Say that the computer did not keep up, from so many seconds dropped within the last one; or nothing."""
+    """Say that the computer did not keep up, from so many seconds that were dropped; or nothing."""
     if behind < LATE:
         return ""
-    said = f"The computer fell behind by {round(1e3 * behind, -1):.0f} ms in the last second"
+    said = f"The computer fell behind by {round(1e3 * min(behind, TOLD), -1):.0f} ms in the last second"
     return said if behind < MUCH else f"{said}: too slow for this scene; give time_scale=0.1 or a cheaper method"
 
 

@@ -67,6 +67,8 @@ def comes_to(page, address):
 def test_what_a_visitor_changes_stands_in_the_address_and_in_the_code(opened):
     page = opened(address="#k=150N/m;slow-motion", color_scheme="dark", viewport={"width": 390, "height": 900})
     assert findings(page) == []
+    page.set_viewport_size({"width": 320, "height": 900})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320  # WCAG 2.2, 1.4.10
     assert field(page, "k").input_value() == "150"
     assert page.get_by_role("button", name="Slow").get_attribute("aria-pressed") == "true"
     expect(page.locator("#hl-code")).to_contain_text("scene = scene(k=150)")
@@ -92,7 +94,7 @@ def test_what_an_address_cannot_set_is_told_in_the_words_of_python(opened):
     assert len(told) == 4 and told[-1] == "2 more parts of the address cannot be used."
     assert page.locator("#hl-told img").count() == 0
     assert field(page, "x_o").input_value() == "12" and field(page, "k").input_value() == "300"
-    page = opened(address="#k=-5")
+    page = opened(address="#k=-5&real-time")
     with pytest.raises(hl.errors.ParameterError) as refused:
         SCENES["wall"](k=-5)
     assert page.locator("#hl-told").inner_text() == str(refused.value)
@@ -109,6 +111,7 @@ def test_a_tick_at_a_time_while_paused_and_not_while_a_number_is_typed(opened):
     before = int(re.search(r"Tick (\d+)", status.inner_text())[1])
     stage.press("n")
     expect(status).to_contain_text(f"Tick {before + 1}:")
+    expect(page.locator(".hl-spoken")).to_contain_text(f"Tick {before + 1}:")
     type_in(page, "k", "310")
     field(page, "k").press("x")
     comes_to(page, "#k=310N/m")
@@ -162,6 +165,9 @@ def test_a_page_runs_in_a_low_frame_without_its_own_origin(browser, files):
     frame.locator(".hl-entry").nth(1).fill("350")
     frame.locator(".hl-entry").nth(1).press("Enter")
     frame.locator("#hl-code", has_text="k=350").wait_for()
+    for key in ("r", "ArrowRight", "s"):
+        frame.locator(".hl-stage").press(key)
+    expect(frame.locator(".hl-status")).to_contain_text("the page around this frame allows no downloads")
     page.close()
 
 

@@ -1,9 +1,11 @@
-"""What stands around the view in a shared file: what it is in a sentence, equations, the code to copy, what the file is not."""
+"""What stands around the view in a shared file: its title, a sentence, equations, the code to copy, what the file is not."""
 
+import re
 from html import escape
 
 from ...errors import ParameterError
 from ...library.entries import CATALOGUE
+from ...scene.laws.taps import TAPS
 from .equations import equations
 from .scene_code import library_name
 
@@ -18,8 +20,29 @@ CHANGES = (
 )
 
 
+#: names that hl.wall gives to its scenes
+_WALL = re.compile(rf"({'|'.join(TAPS)}) wall(, .*)?")
+OF_A_WALL = (
+    "A spring and a damper push the handle back beyond the boundary x_o. Drag the handle there, or use the arrow keys."
+)
+OF_ANY = "A simulated paddle. Drag its handle, or move it with the arrow keys."
+
+
+def heading(scene):
+    """Return the title of a scene's page.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> heading(hl.library.stick_slip()), heading(hl.wall("ellis"))
+    ('Stick-slip', 'Virtual wall, law ellis')
+    """
+    wall = _WALL.fullmatch(scene.name)
+    return f"Virtual wall, law {wall[1]}{wall[2] or ''}" if wall else scene.name[:1].upper() + scene.name[1:]
+
+
 def lead(scene):
-    """Return a sentence on a scene, for its page's head and for search engines.
+    """Return a sentence or two on a scene, for its page's head and for search engines.
 
     Examples
     --------
@@ -27,12 +50,11 @@ def lead(scene):
     >>> lead(hl.library.stick_slip())
     "A block on a rough floor, pulled by the handle through the coupler's spring."
     >>> lead(hl.wall()(k=300, x_o=0.01))
-    'A simulated paddle with the scene zoh wall: drag its handle, or move it with the arrow keys.'
+    'A spring and a damper push the handle back beyond the boundary x_o. Drag the handle there, or use the arrow keys.'
     """
     known = library_name(scene)
-    own = f"A simulated paddle with the scene {scene.name}: drag its handle, or move it with the arrow keys."
     if not known:
-        return own
+        return OF_A_WALL if _WALL.fullmatch(scene.name) else OF_ANY
     title = CATALOGUE[known].title.removesuffix(".")
     head, _, rest = title.partition(": ")
     said = rest if head.lower() == scene.name else title
@@ -88,9 +110,10 @@ def body(scene, code, fixed):
 
 def _changes(scene, fixed):
     """Say how an address carries values, with one of the scene's own, if it has any that can be changed."""
-    name = next((name for name in scene.values if name not in fixed), None)
-    if name is None:
+    free = [name for name in scene.values if name not in fixed]
+    if not free:
         return ""
+    name = next((name for name in free if scene.values[name]), free[0])  # B = 0 would say little
     unit = scene.parameters[name].unit
     return " " + CHANGES.format(example=f"{name}={scene.values[name]:g}{'' if unit == '1' else unit}")
 

@@ -19,13 +19,14 @@ WAITING = (
 NO_SCRIPT = "This page runs a simulation, which needs JavaScript. Allow it for this file, or open the file in another browser."
 
 
-def page(data, lead="", body="", picture=""):
+def page(data, title, lead="", body="", picture=""):
     """Return the text of a shared file.
 
     Parameters
     ----------
     data : dict
         As :func:`~hapticlab.widgets.shared.page_data.page_data` makes it.
+    title : str
     lead : str
         A sentence on the scene, in plain text.
     body : str
@@ -38,4 +39,4 @@ def page(data, lead="", body="", picture=""):
 <div id="hl-view">{picture}<p>{WAITING}</p><noscript><p>{NO_SCRIPT}</p></noscript></div>
 {body}"""
     scripts = (*VIEW_SCRIPTS, *PAGE_SCRIPTS)
-    return document(data["scene"], main, data, scripts=scripts, styles=STYLES, description=lead)
+    return document(title, main, data, scripts=scripts, styles=STYLES, description=lead)

@@ -15,7 +15,7 @@ from ...errors import PaddleError
 from ...scene.scene import check_scene
 from ..live import SPEEDS
 from ..stage import Stage
-from .around import body, fixed, lead
+from .around import body, fixed, heading, lead
 from .code import shared_code
 from .page import page
 from .page_data import page_data
@@ -107,7 +107,7 @@ def share(
     python = _code(code, scene, paddle, changed | compile_options)
     data = page_data(stage) | {"metric": units(), "code": python, "fixed": fixed(scene, stage.source)}
     picture = still(stage.drawn(None), stage.picture.box, f"{scene.name}: the first picture of the scene")
-    text = page(data, lead(scene), body(scene, python, data["fixed"]), picture)
+    text = page(data, heading(scene), lead(scene), body(scene, python, data["fixed"]), picture)
     path = Path(_file_name(scene.name) if path is None else path)
     path.write_text(text, "utf-8", newline="\n")
     return SharedFile(path, len(text.encode()), stage.source.program.name)

@@ -9,6 +9,7 @@ import pytest
 from page_in_node import NODE, array, in_node, text
 
 import hapticlab as hl
+from hapticlab.analysis.records import chatter, chatter_signs
 from hapticlab.compiler.tick.live_limits import limits_apart
 from hapticlab.device.live_parameters import checked
 from hapticlab.errors import ParameterError
@@ -85,7 +86,7 @@ def names_case():
 
 
 def vibrations_case():
-    """Chatter, a passive vibration, one that is led, a decay, a hand, noise, rest, too short, and a square wave."""
+    """Chatter, a passive vibration, one that is led, a decay, a hand, noise, rest, too short, a square wave, and any others."""
     t, rng = np.arange(1000) * 1e-3, np.random.default_rng(2)
     buzz = 4e-4 * np.sin(2 * np.pi * 41 * t)
     late, early = 100 * np.r_[buzz[0], buzz[:-1]], 100 * np.r_[buzz[1:], buzz[-1]]
@@ -95,9 +96,26 @@ def vibrations_case():
         (0.02 * np.sin(4 * np.pi * t), late), (rng.normal(0, 1e-4, 1000), late), (0 * t, late), (buzz[:3], late[:3]),
         (square, late),
     ]  # fmt: skip
-    expected = [status_words.chatter_words(x, F, 1e-3) for x, F in cases]
-    assert expected[0] == "Chatter: 0.4 mm at 41 Hz" and expected[2].startswith("The handle") and "" in expected
-    return [("words", {"name": "chatterWords", "given": [text(x), text(F), 1e-3]}) for x, F in cases], expected
+    cases = [(x, F, 1e-3) for x, F in cases] + [any_vibration(rng, T) for T in [1e-3, 5e-3, 2e-2] * 15]
+    slow = 4e-4 * np.sin(2 * np.pi * 16 * 0.02 * np.arange(40))
+    cases += [(slow[1 : size + 1], 100 * slow[:size], 2e-2) for size in range(30, 39)]  # about the shortest
+    expected = [status_words.chatter_words(*case) for case in cases]
+    assert expected[0] == "Chatter: 0.4 mm at 41 Hz" and expected[2].startswith("The handle")
+    assert 15 < sum(map(bool, expected)) < len(expected) - 15
+    return [("words", {"name": "chatterWords", "given": [text(x), text(F), T]}) for x, F, T in cases], expected
+
+
+def any_vibration(rng, T):
+    """A vibration that grows, decays or stays, with a drift, a hand's motion, noise and an encoder, at a spring a sample late."""
+    t = np.arange(round(1 / T)) * T
+    x = (
+        10 ** rng.uniform(-5, -2.3)
+        * np.sin(2 * np.pi * rng.uniform(4, min(0.4 / T, 150)) * t)
+        * np.exp(rng.choice([0, 0, -3]) * t)
+    )
+    x += rng.choice([0, 0.05]) * t + rng.choice([0, 1e-5]) * rng.normal(size=len(t)) + rng.choice([0, 0.01]) * np.sin(9 * t)
+    x = np.round(x / 12.8e-6) * 12.8e-6 if rng.random() < 0.5 else x
+    return x, np.maximum(300 * np.r_[x[0], x[:-1]], 0), T
 
 
 def short_words_case():
@@ -111,6 +129,14 @@ def short_words_case():
     return asked, expected + [f"{each:.{digits}g}" for each in numbers for digits in (4, 6)]
 
 
+def advice_case():
+    """A page gives advice of its own: what Python says is an argument of hl.live."""
+    said = status_words.late_words(3600.0).removesuffix("give time_scale=0.1 or a cheaper method")
+    assert "by 1000 ms in the last second" in said
+    asked = [("words", {"name": "lateWords", "given": [3600.0, slower]}) for slower in (True, False)]
+    return asked, [f"{said}press M for slow motion", f"{said}close other pages and programs"]
+
+
 def places_case():
     ends = np.random.default_rng(1).normal(0, 0.02, (40, 2))
     asked = [("words", {"name": "linspace", "given": [a, b, k + 2]}) for k, (a, b) in enumerate(ends)]
@@ -120,7 +146,7 @@ def places_case():
 
 CASES = {
     "ticks that are due": pace_case, "rows and energy": rows_case, "refusals": refusals_case, "names": names_case,
-    "vibrations": vibrations_case, "short words": short_words_case, "places": places_case,
+    "vibrations": vibrations_case, "short words": short_words_case, "advice": advice_case, "places": places_case,
 }  # fmt: skip
 
 
@@ -177,7 +203,9 @@ CONSTANTS = {
     "motion.js": {"FASTEST": motion.FASTEST, "FOLLOWS": motion.FOLLOWS},
     "source.js": {"LOOK": stage.LOOK, "NOTE": stage.NOTE, "PAST": stage.PAST, "RESTING": 1 / stage.RESTING},
     "status.js": {
-        name: getattr(status_words, name) for name in ("SLOWEST", "SMALLEST", "MEAN", "SUSTAINED", "LATE", "MUCH", "CHANGES")
+        **{name: getattr(status_words, name) for name in ("SLOWEST", "SMALLEST", "MEAN", "SUSTAINED", "LATE", "MUCH", "CHANGES")},
+        **{"SWINGS_LED": status_words.LED, "SHORTEST": chatter.SHORTEST, "REVERSALS": chatter.REVERSALS},
+        **{name: getattr(chatter_signs, name) for name in ("LAGS", "CORRELATED")},
     },
 }
 

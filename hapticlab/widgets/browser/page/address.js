@@ -19,7 +19,7 @@ function readAddress(hash, { parameters, units, flags, traces, fixed = {} }) {
     found.problems.push(`The address has ${text.length} letters, and this page reads ${LONGEST_ADDRESS}: it shows its own values.`)
     return found
   }
-  for (const part of text.split(";")) {
+  for (const part of text.split(/[;&]/)) {
     const equals = part.indexOf("=")
     const name = (equals < 0 ? part : part.slice(0, equals)).trim()
     const parameter = parameters.find((each) => each.name === name)

@@ -1,13 +1,20 @@
 // Files that the browser keeps for a person, among their downloads.
 
+const FRAMED = ". If it is not there, the page around this frame allows no downloads: open the frame in a tab of its own"
+
 // Keep a record as a file that hapticlab reads, or as a table; return words on it.
 function keepRecord(log, told) {
   const name = keepFile(recordFile(log, told), told.scene, "npz", "application/zip")
-  return `Saved ${name}, see your downloads: hl.records.Telemetry.load reads it`
+  return keptWords(name, ": hl.records.Telemetry.load reads it")
 }
 
 function keepTable(log, told) {
-  return `Saved ${keepFile(new TextEncoder().encode(recordTable(log, told)), told.scene, "csv", "text/csv")}, see your downloads`
+  return keptWords(keepFile(new TextEncoder().encode(recordTable(log, told)), told.scene, "csv", "text/csv"))
+}
+
+// A frame is not told that it may not keep files.
+function keptWords(name, more = "") {
+  return `Saved ${name}, see your downloads${more}${window.parent === window ? "" : FRAMED}`
 }
 
 function keepFile(bytes, scene, ending, type) {

@@ -4,10 +4,11 @@
 const WRITTEN_AFTER = 200 // [ms] after a change: a slider that is dragged writes once
 const MOST_TOLD = 3 // sentences on an address
 const MOST_TRACES = 4 // more would be too low to read
+const PACES = ["real-time", "slow-motion"]
 const PAGE_BUTTONS = {
-  step: { key: "N", word: "Next tick", title: "pause, and advance by one sampling period" },
-  table: { key: "C", word: "CSV", title: "save the recording as a table" },
-  reset: { key: "X", word: "Reset all", title: "values, motion and address as in the file" },
+  step: { key: "N", after: "run", word: "Next tick", title: "pause, and advance by one sampling period" },
+  reset: { key: "X", after: "again", word: "Reset all", title: "values, motion and address as in the file" },
+  table: { key: "C", after: "save", word: "CSV", title: "save the recording as a table" },
 }
 const PAGE_KEYS = "Of this page: N next tick, C save as CSV, X reset all. Keys act while the view has the focus."
 
@@ -17,7 +18,7 @@ class Page {
     Object.assign(this, { source, view, told })
     const { traces } = told.about
     this.pace = told.about.speed === told.about.slow ? "real-time" : "slow-motion" // what M changes it to
-    const named = { flags: [this.pace], traces: traces.map((each) => each.name) }
+    const named = { flags: PACES, traces: traces.map((each) => each.name) }
     this.words = { parameters: told.parameters, fixed: told.fixed, units: told.metric, ...named }
     this.own = traces.filter((each) => each.open).map((each) => each.name)
     this.said = document.getElementById("hl-told")
@@ -92,12 +93,14 @@ class Page {
 
   buildButtons() {
     this.buttons = {}
-    for (const [name, { key, word, title }] of Object.entries(PAGE_BUTTONS)) {
+    const { buttons } = this.view.controls
+    for (const [name, { key, after, word, title }] of Object.entries(PAGE_BUTTONS)) {
       const shown = [word, " ", make("kbd", { "aria-hidden": "true" }, [key])]
       this.buttons[name] = make("button", { type: "button", title, "aria-keyshortcuts": key }, shown)
       this.buttons[name].addEventListener("click", () => this.press(name))
+      buttons[after].after(this.buttons[name])
     }
-    this.view.controls.row.append(...Object.values(this.buttons))
+    buttons.record.before(make("span", { class: "hl-break" })) // what moves above, what is recorded below
     this.view.root.querySelector(".hl-help").append(make("p", {}, [PAGE_KEYS]))
     this.view.root.addEventListener("keydown", (event) => this.key(event))
     this.showButtons()
@@ -131,8 +134,12 @@ class Page {
 
   step() {
     const { stepping } = this.source
+    const before = stepping.ticks
     this.source.step()
-    this.source.say(`Tick ${stepping.ticks}: t = ${general(1e3 * stepping.ticks * stepping.T)} ms`)
+    if (stepping.ticks === before) return // it stopped, and says why
+    const words = `Tick ${stepping.ticks}: t = ${general(1e3 * stepping.ticks * stepping.T)} ms`
+    this.source.say(words)
+    this.view.spoken.answer(`${words}.`) // each time: a status is spoken when its kind changes
   }
 
   reset() {

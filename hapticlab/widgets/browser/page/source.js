@@ -73,7 +73,7 @@ class PageSource {
   }
 
   resume() {
-    if (this.lost) return this.start()
+    if (this.lost || this.stepping.fault) return this.start()
     this.wantsToRun = true
     return this.motion.resume()
   }

@@ -24,7 +24,7 @@ function statusWords(motion, now, { vibration, lost, note }) {
     const [, , contact] = motion.rows.last()
     const touched = contactWords(contact.slice(contact.length - Math.ceil(contact.length / 4)))
     const free = motion.held ? "" : "The handle is let go"
-    said = [runs + touched, vibration, motion.atLimit ? AT_LIMIT : "", lateWords(motion.pace.behind(now)), free]
+    said = [runs + touched, vibration, motion.atLimit ? AT_LIMIT : "", lateWords(motion.pace.behind(now), motion.speed > motion.told.about.slow), free]
   }
   const records = motion.running && !motion.replaying ? "Recording" : "Recording waits"
   said.push(motion.missed ? MISSED : "", motion.recording ? records : "", note)
@@ -39,11 +39,11 @@ function contactWords(contact) {
   return contact.at(-1) ? ", in contact" : ", not in contact"
 }
 
-// Say that the computer did not keep up, from so many seconds dropped within the last one; or nothing.
-function lateWords(behind) {
+// Say that the computer did not keep up, from so many seconds that were dropped; or nothing. slower: it could run slower
+function lateWords(behind, slower = true) {
   if (behind < LATE) return ""
-  const said = `The computer fell behind by ${10 * Math.round(100 * behind)} ms in the last second`
-  return behind < MUCH ? said : `${said}: too slow for this scene; press M for slow motion`
+  const said = `The computer fell behind by ${10 * Math.round(100 * Math.min(behind, TOLD))} ms in the last second`
+  return behind < MUCH ? said : `${said}: too slow for this scene; ${slower ? "press M for slow motion" : "close other pages and programs"}`
 }
 
 // Say how a handle vibrates where the scene runs, or nothing.
@@ -56,7 +56,7 @@ function vibrationWords(motion) {
 // where the environment gives energy to a handle that is not led on.
 function chatterWords(x, F, T) {
   const width = Math.max(1, Math.round(MEAN / T))
-  if (x.length < Math.max(SHORTEST, 4 * width) || !(extent(x) > SMALLEST) || !F.some(Boolean)) return ""
+  if (x.length < Math.max(SHORTEST + width - 1, 4 * width) || !(extent(x) > SMALLEST) || !F.some(Boolean)) return ""
   const total = [0]
   for (const place of x) total.push(total.at(-1) + place)
   const mean = Float64Array.from({ length: x.length - width + 1 }, (_, k) => (total[k + width] - total[k]) / width)
