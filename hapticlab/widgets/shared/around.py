@@ -22,9 +22,7 @@ CHANGES = (
 
 #: names that hl.wall gives to its scenes
 _WALL = re.compile(rf"({'|'.join(TAPS)}) wall(, .*)?")
-OF_A_WALL = (
-    "A spring and a damper push the handle back beyond the boundary x_o. Drag the handle there, or use the arrow keys."
-)
+OF_A_WALL = "A spring and a damper push the handle back beyond the boundary x_o. Drag the handle there, or use the arrow keys."
 OF_ANY = "A simulated paddle. Drag its handle, or move it with the arrow keys."
 
 
