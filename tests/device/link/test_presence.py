@@ -13,6 +13,7 @@ import pytest
 import serial
 
 from hapticlab.device.board.run import fault_words
+from hapticlab.device.link import presence
 from hapticlab.device.link.exchange import Exchange
 from hapticlab.device.link.messages import FAULTS
 from hapticlab.device.link.presence import LONGEST_PAUSE, Presence
@@ -111,6 +112,20 @@ def test_absence_counts_from_the_last_start_and_ends_with_the_reader():
     presence.forget()
     presence.end()  # from then on nobody is to call
     assert presence.absent() == 0.0
+
+
+def test_a_clock_that_has_a_number_and_is_not_there_is_passed_over(monkeypatch):
+    """As CLOCK_BOOTTIME in a browser."""
+    monkeypatch.setattr(presence.time, "CLOCK_BOOTTIME", 7, raising=False)
+    monkeypatch.setattr(presence.time, "CLOCK_MONOTONIC", 1, raising=False)
+
+    def read(number):
+        if number == 7:
+            raise OSError(28, "Invalid argument")
+        return 3.0
+
+    monkeypatch.setattr(presence.time, "clock_gettime", read, raising=False)
+    assert [*presence._clocks()] == [1]
 
 
 def test_the_fault_says_it():
