@@ -13,8 +13,8 @@ from .array_functions import ELEMENTWISE, MOVES, SAME, SPELT
 FOLDED = 32
 
 
-class NotRecorded(Exception):
-    """What was asked of a node needs its number."""
+class NotRecorded(BaseException):
+    """What was asked of a node needs its number; no user's ``except Exception`` catches it."""
 
 
 class Undecided(BaseException):

@@ -81,6 +81,14 @@ def test_a_line_of_known_numbers_is_as_short_as_what_makes_it():
     np.testing.assert_allclose(value_of(data, {"a": 0.02}), np.sin(2 * np.pi * at / 0.02), atol=1e-13)
 
 
+def or_nothing(k):
+    """A function whose own except would hide that it was not recorded, and draw something else."""
+    try:
+        return math.cos(k["a"])
+    except Exception:
+        return 0.0
+
+
 @pytest.mark.parametrize(
     ("function", "said"),
     [
@@ -89,6 +97,7 @@ def test_a_line_of_known_numbers_is_as_short_as_what_makes_it():
             r"f uses float\(\), int\(\), a function of math, .* with a value that changes. .* Use np.cos",
         ),
         (lambda k: float(k["a"]), r"f uses float\(\)"),
+        (or_nothing, r"f uses float\(\)"),
         (lambda k: [1.0] * int(k["a"]), r"f uses float\(\)"),
         (lambda k: f"{k['a']:.1f}", "f uses .* a label's text"),
         (lambda k: f"{k['a']}", "f uses .* a label's text"),

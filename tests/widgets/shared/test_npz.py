@@ -21,7 +21,7 @@ def written(log, path):
     columns = {name: [None if value != value else value for value in getattr(log, name).tolist()] for name in names}
     about = {"columns": columns, "parameters": log.parameters, "changes": log.changes, "T": log.T, "fault": log.fault}
     told = {name: getattr(log, name) for name in ("scene", "paddle", "delay", "sensor_delay", "units")} | {"force_max": 1.0}
-    path.write_bytes(base64.b64decode(evaluated(["npz.js"], WRITE, log=about, told=told)))
+    path.write_bytes(base64.b64decode(evaluated(["rows.js", "npz.js"], WRITE, log=about, told=told)))
     return path
 
 

@@ -23,7 +23,7 @@ function npy(type, array, shape = `(${array.length},)`) {
   const words = `{'descr': '${type}', 'fortran_order': False, 'shape': ${shape}, }`
   const head = words.padEnd(Math.ceil((words.length + 11) / 64) * 64 - 11) + "\n"
   const prefix = Uint8Array.from([0x93, ...[..."NUMPY"].map((letter) => letter.charCodeAt(0)), 1, 0, head.length & 255, head.length >> 8])
-  return together([prefix, new TextEncoder().encode(head), new Uint8Array(array.buffer)])
+  return joined([prefix, new TextEncoder().encode(head), new Uint8Array(array.buffer)], Uint8Array)
 }
 
 function npyText(text) {
@@ -39,29 +39,20 @@ function zipped(entries) {
     const letters = new TextEncoder().encode(name)
     const sizes = [[crc32(bytes), 4], [bytes.length, 4], [bytes.length, 4], [letters.length, 2]]
     const file = [[20, 2], [0x800, 2], [0, 2], [0, 2], [0x21, 2], ...sizes, [0, 2]] // names in UTF-8, stored, 1 January 1980
-    const local = together([little([[0x04034b50, 4], ...file]), letters, bytes])
+    const local = joined([little([[0x04034b50, 4], ...file]), letters, bytes], Uint8Array)
     index.push(little([[0x02014b50, 4], [20, 2], ...file, [0, 2], [0, 2], [0, 2], [0, 4], [at, 4]]), letters)
     parts.push(local)
     at += local.length
   }
-  const directory = together(index)
+  const directory = joined(index, Uint8Array)
   const count = entries.length
-  return together([...parts, directory, little([[0x06054b50, 4], [0, 2], [0, 2], [count, 2], [count, 2], [directory.length, 4], [at, 4], [0, 2]])])
+  const end = little([[0x06054b50, 4], [0, 2], [0, 2], [count, 2], [count, 2], [directory.length, 4], [at, 4], [0, 2]])
+  return joined([...parts, directory, end], Uint8Array)
 }
 
 // Whole numbers, each in so many bytes, the lowest first.
 function little(numbers) {
   return Uint8Array.from(numbers.flatMap(([number, bytes]) => Array.from({ length: bytes }, (_, k) => (number / 2 ** (8 * k)) & 255)))
-}
-
-function together(parts) {
-  const whole = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0))
-  let at = 0
-  for (const part of parts) {
-    whole.set(part, at)
-    at += part.length
-  }
-  return whole
 }
 
 // Begun from the CRC-32 of what stands before the bytes, or from any other number.

@@ -139,7 +139,7 @@ class Page {
     if (stepping.ticks === before) return // it stopped, and says why
     const words = `Tick ${stepping.ticks}: t = ${general(1e3 * stepping.ticks * stepping.T)} ms`
     this.source.say(words)
-    this.view.spoken.answer(`${words}.`) // each time: a status is spoken when its kind changes
+    this.view.spoken.say(`${words}.`) // each time: a status is spoken when its kind changes
   }
 
   reset() {

@@ -60,8 +60,8 @@ class Rows {
   }
 }
 
-function joined(parts) {
-  const whole = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0))
+function joined(parts, type = Float64Array) {
+  const whole = new type(parts.reduce((sum, part) => sum + part.length, 0))
   let end = 0
   for (const part of parts) {
     whole.set(part, end)
