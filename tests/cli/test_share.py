@@ -47,6 +47,12 @@ def test_share_refuses_what_cannot_be_set(scene_file, capsys):
     assert not list(scene_file.glob("*.html"))
 
 
+def test_a_scene_file_is_not_replaced(scene_file, capsys):
+    assert main.main(["share", "soft.py", "-o", "soft.py"]) == 1
+    assert "path = 'soft.py'; a browser opens a file that ends in .html. Give 'soft.html'" in capsys.readouterr().err
+    assert (scene_file / "soft.py").read_text() == SCENE
+
+
 def test_readers_copy_the_text_of_the_file_with_what_was_set(scene_file, capsys):
     assert main.main(["share", "soft.py", "--set", "k=0.4 N/mm", "--set", "x_o=0.02", "--method", "euler"]) == 0
     code = "".join(data_of(scene_file / "soft.html")["code"])

@@ -58,7 +58,8 @@ def share(
     paddle : SimulatedPaddle
         Its hand holds the handle, led by whoever opens the file, or ``hl.Hand("pinch")`` where that hand has no spring.
     path : str or Path, optional
-        The file to write; a file of that name is replaced. By default the name of the scene, in the current folder.
+        The file to write, which ends in .html; a file of that name is replaced. By default the name of the scene, in the
+        current folder.
     sliders, time_scale, picture, let_go
         As for :func:`hapticlab.live`.
     code : str or bool
@@ -75,7 +76,7 @@ def share(
     Raises
     ------
     PaddleError
-        For a paddle that is not simulated, and a time_scale out of its range.
+        For a paddle that is not simulated, a path that does not end in .html, and a time_scale out of its range.
     ParameterError
         For sliders of what cannot be set, and a parameter without a value.
     AnalysisError
@@ -97,6 +98,11 @@ def share(
             f"paddle = {paddle!r}; a shared file runs on a simulated paddle, since it never opens a port. Give "
             "hl.SimulatedPaddle(...)"
         )
+    path = Path(_file_name(scene.name) if path is None else path)
+    if path.suffix.lower() not in (".html", ".htm"):  # a browser shows others as text, and a scene file would be lost
+        raise PaddleError(
+            f"path = {str(path)!r}; a browser opens a file that ends in .html. Give {str(path.with_suffix('.html'))!r}"
+        )
     slowest, fastest = SPEEDS
     why = "1 is real time, 0.1 slow motion"
     speed = number("time_scale", time_scale, "", "a shared file", least=slowest, most=fastest, why=why, error=PaddleError)
@@ -108,7 +114,6 @@ def share(
     data = page_data(stage) | {"metric": units(), "code": python, "fixed": fixed(scene, stage.source)}
     picture = still(stage.drawn(None), stage.picture.box, f"{scene.name}: the first picture of the scene")
     text = page(data, heading(scene), lead(scene), body(scene, python, data["fixed"]), picture)
-    path = Path(_file_name(scene.name) if path is None else path)
     path.write_text(text, "utf-8", newline="\n")
     return SharedFile(path, len(text.encode()), stage.source.program.name)
 
