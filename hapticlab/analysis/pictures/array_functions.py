@@ -35,8 +35,13 @@ def _matmul(graph, a, b):
     return np.sum(a * b, axis=-1) if b.ndim == 1 else np.sum(a[..., :, None] * b, axis=-2)
 
 
+def _dot(graph, a, b):
+    a, b = graph.node(a), graph.node(b)
+    return _matmul(graph, a, b) if a.ndim and b.ndim else a * b
+
+
 def _linspace(graph, start, stop, num=50):
-    return start + (stop - start) / (num - 1) * np.arange(num)
+    return start + (stop - start) / max(num - 1, 1) * np.arange(num)
 
 
 def _round(graph, a, decimals=0):
@@ -51,7 +56,7 @@ def _mean(graph, a, axis=None):
 SPELT = {
     "where": lambda graph, condition, then, other: graph.elementwise("where", condition, then, other),
     "interp": lambda graph, x, xp, fp: graph.interp(x, xp, fp),
-    "matmul": _matmul, "dot": _matmul, "linspace": _linspace, "round": _round, "around": _round, "mean": _mean,
+    "matmul": _matmul, "dot": _dot, "linspace": _linspace, "round": _round, "around": _round, "mean": _mean,
     "max": _over("maximum"), "amax": _over("maximum"), "min": _over("minimum"), "amin": _over("minimum"), "sum": _over("add"),
     "prod": _over("multiply"), "all": _over("logical_and"), "any": _over("logical_or"),
     "cumsum": _along("add"), "cumprod": _along("multiply"),

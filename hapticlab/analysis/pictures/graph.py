@@ -154,9 +154,11 @@ class Node(NDArrayOperatorsMixin):
         name = SAME.get(ufunc.__name__, ufunc.__name__)
         if method == "__call__" and name in SPELT and not options:
             return SPELT[name](self.graph, *inputs)
-        if name not in ELEMENTWISE or options or (out and self.shape):
+        if out and (self.shape or out[0] is not self):  # a view of the array, or who else has it, would not see the change
+            raise NotRecorded("+= or another change in place, or out=, on an array")
+        if name not in ELEMENTWISE or options or method not in ("__call__", "reduce", "accumulate"):
             raise NotRecorded(f"np.{ufunc.__name__}" + (f".{method}" if method != "__call__" else ""))
-        if method in ("reduce", "accumulate"):
+        if method != "__call__":
             return self.graph.grouped(method, name, self, axis)
         return self.graph.elementwise(name, *inputs)
 
@@ -186,9 +188,12 @@ class Node(NDArrayOperatorsMixin):
         """Return it in another shape."""
         return self.graph.moved(lambda places: places.reshape(*shape), self)
 
-    def astype(self, _):
-        """Return it as it is: every number is a float, and a truth is 1 or 0."""
-        return self
+    def astype(self, kind):
+        """Return its numbers as another kind has them, each a float still: whole ones, or 1 and 0 for truths."""
+        kind = np.dtype(kind).kind
+        if kind not in "fiub":
+            raise NotRecorded("astype() of what is not a number")
+        return {"f": self, "b": self != 0}.get(kind, np.trunc(self))
 
     def __bool__(self):
         known = self.graph.constant(self.number)

@@ -23,6 +23,11 @@ def line(known, count=6):
     return np.stack([known[NAMES[k % 3]] * (k + 1) for k in range(count)])
 
 
+def summed_up(value, more):
+    value += more
+    return value
+
+
 GRID, LEVELS = np.array([-3.0, -1.0, 0.5, 4.0]), np.array([1.0, 2.0, -1.0, 0.5])
 FUNCTIONS = {
     "arithmetic": lambda k: (k["a"] + 2) * k["b"] - 3 / k["c"] + abs(-k["a"]) ** 1.5 + 2 ** k["b"] - k["a"] // 0.3 + k["b"] % 0.7,
@@ -31,6 +36,7 @@ FUNCTIONS = {
     "many": lambda k: np.cos(np.linspace(0, 1, 50) * 2) * k["a"],
     "matmul": lambda k: line(k).reshape(3, 2) @ np.array([[1.0, 2.0], [3.0, 4.0]]) @ np.stack([k["a"], 1.0]),
     "dot": lambda k: np.dot(np.arange(3.0), line(k, 3)),
+    "dot of a number": lambda k: np.dot(k["a"], np.arange(3.0)) + np.dot(line(k, 3), k["b"]),
     "stack": lambda k: np.column_stack([line(k, 3), np.arange(3.0), np.full(3, k["b"])]).T[::-1],
     "concatenate": lambda k: np.concatenate([np.zeros(2), line(k)[1:], [k["c"]]]),
     "moves": lambda k: np.roll(np.flip(np.transpose(line(k).reshape(2, 3))), 1, axis=0)[..., 0],
@@ -43,7 +49,8 @@ FUNCTIONS = {
     "along": lambda k: np.cumsum(line(k).reshape(2, 3), axis=0) + np.cumprod(line(k)).reshape(2, 3),
     "any": lambda k: np.stack([np.any(line(k) > 3), np.all(line(k) > -99)]).astype(float),
     "interp": lambda k: np.interp(line(k), GRID, LEVELS * k["a"]),
-    "linspace": lambda k: np.linspace(k["a"], 3.0, 7),
+    "linspace": lambda k: np.concatenate([np.linspace(k["a"], 3.0, 7), np.linspace(k["b"], 3.0, 1)]),
+    "kinds": lambda k: line(k).astype(int) + (k["a"] * 7).astype("int32") + line(k).astype(bool) * k["b"].astype(np.float64),
     "rounded": lambda k: np.round(line(k), 1) + np.clip(line(k), -1, k["a"]),
     "where": lambda k: np.where(line(k) > 0, k["a"], np.arange(6.0)),
     "diff": lambda k: np.diff(np.square(line(k))) + np.deg2rad(k["b"]) + np.reciprocal(k["c"]),
@@ -52,6 +59,7 @@ FUNCTIONS = {
     "not finite": lambda k: np.stack([k["a"], np.nan, np.inf, -np.inf]),
     "ways": lambda k: k["a"] * 2 if k["a"] > k["b"] else max(k["b"], k["c"]),
     "own steps": lambda k: sum(n * k["a"] for n in range(4)),
+    "summed up": lambda k: summed_up(k["a"], k["b"]),
 }
 
 
@@ -103,6 +111,11 @@ def or_nothing(k):
         (lambda k: f"{k['a']}", "f uses .* a label's text"),
         (lambda k: np.linalg.norm(line(k)), "f uses np.norm with"),
         (lambda k: np.divmod(k["a"], 2), "f uses np.divmod with"),
+        (lambda k: np.multiply.outer(line(k), np.arange(2.0)), "f uses np.multiply.outer with"),
+        (lambda k: np.add(np.zeros(3), k["a"], out=np.zeros(3)), "f uses .* or out=, on an array with"),
+        (lambda k: summed_up(np.zeros(6)[1:], k["a"]), "f uses .= or another change in place"),
+        (lambda k: summed_up(line(k), 1.0), "f uses .= or another change in place"),
+        (lambda k: k["a"].astype(str), "f uses astype.. of what is not a number with"),
         (lambda k: 1.0 if line(k) > 0 else 0.0, "f uses if or a comparison of a whole array"),
         (lambda k: np.cos(np.array([k["a"], 1.0])), r"f stops with TypeError: .* Use .* np.stack\(\[x, y\]\) instead"),
         (lambda k: sum(1 for n in range(2 * WAYS) if k["a"] * n > k["b"]), f"f goes more than {WAYS} ways .* Use np.where"),
