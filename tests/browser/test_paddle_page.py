@@ -48,6 +48,8 @@ AROUND = """async ([wasm, store, known]) => {
   frame.src = "/paddle.html#start=1;k=900"
 }"""
 DOCUMENT, WINDOW = "frame.contentDocument", "frame.contentWindow"
+#: a press just after the motor went off starts nothing; the fake's tick is 1 ms
+RESTED = "board.duties.slice(-1100).every((duty) => duty === 0)"
 #: what a test made of the page's document and scene is as before
 SEEN = f"""delete {DOCUMENT}.hidden
   {DOCUMENT}.dispatchEvent(new Event('visibilitychange'))
@@ -134,7 +136,7 @@ class Bench:
     def start(self, hand=0.02):
         """Take the handle into the wall, and press Start."""
         self.page.evaluate("(hand) => { board.hand = hand }", hand)
-        self.until("Math.abs(board.v) < 0.01 && board.x > 0.015")
+        self.until(f"Math.abs(board.v) < 0.01 && board.x > 0.015 && {RESTED}")
         self.press(self.button("run"), "board.core.duty !== 0 && said().startsWith('Motor on')")
 
     def off_after(self, work, rest=250):
@@ -219,6 +221,58 @@ def test_a_wall_is_felt_and_every_way_to_stop_stops_it(bench, tmp_path):
         bench.start()
     assert bench.errors == [] and {url.partition("#")[0] for url in bench.requests} == {f"{HERE}/", f"{HERE}/paddle.html"}
     assert "HOME" not in started(bench) and page.evaluate("serial.gotten") == 0
+
+
+@pytest.mark.wide
+def test_a_press_that_was_meant_for_stop_never_starts(bench):
+    keys, mouse, run = bench.page.keyboard, bench.page.mouse, bench.button("run")
+
+    def twice(_):
+        for _ in range(2):
+            keys.press(" ")
+
+    def held(_):
+        for _ in range(3):  # a key that is held comes again and again
+            keys.down(" ")
+        keys.up(" ")
+
+    def after_a_fault(bench):
+        bench.page.evaluate("tick = board.ticks; board.v = 4")
+        bench.until("said().includes('OVER_SPEED')")
+        keys.press("Enter")
+
+    def dragged(_):
+        mouse.down()
+        bench.until("said().startsWith('Motor off')")
+        mouse.move(5, 5)
+        mouse.up()
+
+    def double(_):
+        run.dblclick()
+
+    def listed(_):
+        bench.frame.locator("#hl-scene").click()
+        bench.until("said().includes('A list, a menu')")
+        keys.press("Escape")
+
+    def menu(_):
+        bench.frame.locator(".hl-stage").click(button="right")
+        bench.until("said().includes('A list, a menu')")
+
+    bench.connect()
+    for stop in (twice, held, after_a_fault, dragged, double, listed, menu):
+        bench.start()
+        starts = started(bench).count("START")
+        run.focus()
+        box = bench.frame.locator("#hl-stop").bounding_box()
+        mouse.move(box["x"] + 9, box["y"] + 9)
+        off = bench.off_after(stop)
+        print(f"{stop.__name__}: motor off {1e3 * off:.0f} ms after it")
+        assert off < 0.1 and started(bench).count("START") == starts, stop.__name__
+    run.focus()
+    keys.press(" ")
+    bench.until("said().includes('Space only stops')")
+    assert bench.errors == []
 
 
 HIDE = f"""Object.defineProperty({DOCUMENT}, 'hidden', {{ get: () => true, configurable: true }})

@@ -54,7 +54,7 @@ class FakeBoard {
 class FakePort extends EventTarget {
   constructor(board, usb = { usbVendorId: 0x2341, usbProductId: 0x0043 }) {
     super()
-    Object.assign(this, { board, usb, taken: false, stuck: false, signals: [], sent: [], readable: null, writable: null })
+    Object.assign(this, { board, usb, taken: false, stuck: false, forgotten: false, signals: [], sent: [], readable: null, writable: null })
     board.port = this
     this.onWire = (bytes) => bytes // what arrives of what the board says
     this.onWay = (bytes) => bytes // what arrives at the board
@@ -95,6 +95,10 @@ class FakePort extends EventTarget {
   async close() {
     this.closed = true
     this.readable = this.writable = null
+  }
+
+  async forget() {
+    this.forgotten = true
   }
 
   // The cable is pulled.

@@ -283,11 +283,86 @@ const scenarios = {
     const b = await (await bench()).running()
     const fault = await b.after(() => push(b))
     b.board.hand = 0.0
+    await b.press("start", 0.4) // it was meant for Stop
+    const soon = b.said().filter((name) => name === "START").length
     await b.pass(0.4)
     await b.press("start", 0.4)
     b.board.hand = 0.02
     await b.pass(0.3)
-    return { ...fault, again: b.board.core.duty, said: b.status() }
+    return { ...fault, soon, again: b.board.core.duty, said: b.status() }
+  },
+  async "pressed just after Stop"() {
+    const b = await (await bench()).running()
+    const starts = () => b.said().filter((name) => name === "START").length
+    await b.press("pause", 0)
+    const stopped = b.clock.now()
+    const refused = []
+    for (const name of ["start", "resume", "restart", "start"]) {
+      await b.press(name)
+      refused.push([starts(), b.status()])
+    }
+    b.pressed = () => stopped - 0.1 // made before, heard after
+    await b.press("start", 0)
+    b.pressed = () => b.clock.now()
+    const early = starts()
+    await b.press("start")
+    await b.press("restart") // a motor that is on begins again at once
+    return { refused, early, then: starts(), duty: b.board.core.duty }
+  },
+  async "stop whose STOP is lost"() {
+    const b = await bench()
+    await b.homed().connect()
+    await b.lead(0.02)
+    b.port.onWire = (bytes) => (b.said().includes("START") ? new Uint8Array(0) : bytes) // so that it still starts
+    b.source.press("start")
+    while (!b.board.core.duty) await b.pass(0.001)
+    let lost = 0
+    b.port.onWay = (bytes) => {
+      const own = b.page.decodeFrame(bytes.slice(0, -1))?.message === "STOP" && lost++ < 1
+      return own ? new Uint8Array(0) : bytes
+    }
+    return { ...(await b.after(() => b.source.press("pause"))), lost }
+  },
+  async "error as it begins"() {
+    const b = await bench()
+    await b.homed().connect()
+    await b.lead(0.02)
+    b.source.begin = () => {
+      throw new Error("a mistake")
+    }
+    await b.press("start")
+    return { said: b.said(), status: b.status(), duty: b.board.core.duty }
+  },
+  async "a board that is silent for a while"() {
+    const b = await bench()
+    await b.connect()
+    b.port.onWire = () => new Uint8Array(0)
+    await b.pass(6)
+    b.port.onWire = (bytes) => bytes
+    const before = b.said().length
+    await b.pass(0.2)
+    return { asked: b.said().length - before }
+  },
+  async "further than its travel"() {
+    const b = await bench()
+    await b.connect()
+    b.board.beyond = true
+    for (const x of [-0.06, 0.06, 0]) await b.lead(x)
+    await b.pass(0.5)
+    return { status: b.status() }
+  },
+  async "reset by a supply that fell"() {
+    const b = await bench()
+    b.port.onWire = (bytes) => {
+      const frame = b.page.decodeFrame(bytes.slice(0, bytes.indexOf(0)))
+      if (frame?.message !== "WELCOME") return bytes
+      const fields = { ...b.page.fieldsOf(frame), reset_cause: b.page.TABLES.reset_causes.BROWN_OUT[0] }
+      return b.page.encodeFrame("WELCOME", frame.sequence, Object.values(fields))
+    }
+    await b.connect()
+    const { notices } = b.paddle
+    await b.wait(b.paddle.close())
+    return { notices, forgotten: b.port.forgotten }
   },
   async "another version"() {
     const b = await bench()

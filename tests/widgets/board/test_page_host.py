@@ -14,7 +14,7 @@ from host_driver import SETTINGS
 from page_bench import STATED, request
 
 import hapticlab as hl
-from hapticlab.device.link.messages import UNCHECKED_FORCE_N
+from hapticlab.device.link.messages import RESET_CAUSES, UNCHECKED_FORCE_N
 from hapticlab.device.link.serial_ports import BAUDRATE, KNOWN
 
 IN_NODE = Path(__file__).with_name("in_node.mjs")
@@ -77,6 +77,32 @@ def test_stop_holds_at_any_moment_of_a_start(found, name):
         assert (off, running) == (0, False) and last == "STATUS"
 
 
+def test_a_press_just_after_the_motor_went_off_starts_nothing(found):
+    seen = found["pressed just after Stop"]
+    assert [starts for starts, _ in seen["refused"]] == [1, 1, 1, 1] and seen["early"] == 1  # the first one's
+    assert all("The motor went off just now and stays off" in said or "The motor is off" in said for _, said in seen["refused"])
+    assert seen["then"] == 3 and seen["duty"] < 0
+
+
+def test_what_goes_wrong_in_a_start_ends_with_the_motor_off(found):
+    lost = found["stop whose STOP is lost"]
+    assert lost["lost"] > 1 and lost["off"] < 0.05  # it is said again
+    broken = found["error as it begins"]
+    assert broken["duty"] == 0 and broken["said"][broken["said"].index("START") :].count("STOP") == 1
+    assert "a mistake" in broken["status"]
+
+
+def test_questions_to_a_board_that_is_silent_do_not_pile_up(found):
+    assert found["a board that is silent for a while"]["asked"] <= 3
+
+
+def test_what_a_board_went_through_is_told(found):
+    assert "It met more travel than was calibrated" in found["further than its travel"]["status"]
+    reset = found["reset by a supply that fell"]
+    assert reset["notices"] == [f"The board was reset by {RESET_CAUSES['BROWN_OUT'][1]}."]
+    assert reset["forgotten"]  # no other page of the site opens the port without asking
+
+
 @pytest.mark.parametrize("name", STATED)
 def test_the_motor_is_off_in_the_stated_time(found, name, record_property):
     within, says = STATED[name]
@@ -95,7 +121,7 @@ def test_a_fault_is_told_in_the_packages_words_and_start_begins_again(found):
         "OVER_SPEED: the handle moved faster than the limit; the motor is off from then on. Hold the handle; lower the stiffness"
     )
     assert said in became["status"] and re.search(r"tick \d+ \(t = [\d.]+ s\)", became["status"])
-    assert became["again"] < 0 and became["said"].startswith("Motor on")
+    assert became["soon"] == 1 and became["again"] < 0 and became["said"].startswith("Motor on")
     stood = found["a fault that stood"]
     assert stood["words"] == "" and stood["state"] == 0 and "A fault was pending: tick" in stood["notices"][0]
 

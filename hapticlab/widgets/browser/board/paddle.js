@@ -19,7 +19,7 @@ class PagePaddle {
       await this.port.open((bytes) => this.exchange.hear(bytes), (problem) => this.fail(problem))
       this.board = await this.hello()
       this.settings = await this.readSettings()
-      this.notices = await this.cleared()
+      this.notices = [...this.resetWords(), ...(await this.cleared())]
     } catch (problem) {
       this.exchange.fail(problem)
       await this.port.close()
@@ -68,6 +68,12 @@ class PagePaddle {
     }
     const { values } = unpack(TABLES.settings, Uint8Array.from(data))
     return values.layout === TABLES.settings_layout && values.crc === crc32(data.slice(0, -4)) ? values : null
+  }
+
+  // Why the board was reset before, in a list that is empty where a person did it.
+  resetWords() {
+    const [name, words] = rowOf(TABLES.reset_causes, this.board.reset_cause) ?? []
+    return ["BROWN_OUT", "WATCHDOG"].includes(name) ? [`The board was reset by ${words}.`] : []
   }
 
   // Clear a fault that stands; return the sentence that tells it, in a list that is empty where none stood.
@@ -131,9 +137,11 @@ class PagePaddle {
     return ""
   }
 
-  // Whether the board knows where its handle is; it forgets with every reset.
+  // Whether the board knows where its handle is; it forgets with every reset. mismatch: the handle met more travel than there is
   async isHomed() {
-    return Boolean((await this.exchange.refresh()).flags & TABLES.flags.HOMED)
+    const { flags } = await this.exchange.refresh()
+    this.mismatch = Boolean(flags & TABLES.flags.TRAVEL_MISMATCH)
+    return Boolean(flags & TABLES.flags.HOMED)
   }
 
   // Send a program and start it, as the press of ``pressed`` [s] asks. told: of data.programs; values: of its parameters, in their order
@@ -157,7 +165,7 @@ class PagePaddle {
     } catch (problem) {
       this.run = null
       if (problem.result) exchange.beating = () => false
-      else this.giveUp() // whether it runs is not known
+      else if (!(problem instanceof Abandoned)) this.giveUp() // whether it runs is not known
       throw problem
     }
     this.heardAt = clock.now()

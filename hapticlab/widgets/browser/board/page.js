@@ -2,12 +2,16 @@
 // on the handle. It reads nothing of its address and hears no other page: what opens a port or starts a motor is a press alone.
 
 const HIDDEN_WORDS = "The page was hidden, so the motor was switched off. Press Start again"
+const KEYLESS_WORDS = "A list, a menu or the print dialog opened, which takes Space and Esc, so the motor was switched off. Press Start again"
+const UNHEARD_WORDS = "The keyboard is elsewhere, so Space and Esc do not stop the motor. Click into this page to have them again"
+const SPACE_WORDS = "Space only stops: press P or Enter to start"
 
 class PaddlePage {
   // data: of the page; element(id): what the page consists of
   constructor(data, element, clock = PAGE_CLOCK) {
-    Object.assign(this, { data, element, clock, paddle: null, source: null, view: null })
+    Object.assign(this, { data, element, clock, paddle: null, source: null, view: null, failed: false })
     for (const { name, title } of data.scenes) element("scene").append(new Option(title, name))
+    for (const kind of ["pointerdown", "keydown"]) element("scene").addEventListener(kind, (event) => event.key !== "Tab" && this.yieldKeys())
     element("scene").addEventListener("change", () => {
       this.say("")
       this.choose()
@@ -22,6 +26,10 @@ class PaddlePage {
 
   listen() {
     window.addEventListener("keydown", (event) => this.stopByKey(event), true)
+    window.addEventListener("pointerdown", (event) => this.stopByPointer(event), true)
+    window.addEventListener("click", (event) => this.stopped && event.detail && event.stopImmediatePropagation(), true)
+    for (const kind of ["contextmenu", "beforeprint"]) window.addEventListener(kind, () => this.yieldKeys())
+    window.addEventListener("blur", () => this.source?.running && this.source.say(UNHEARD_WORDS))
     document.addEventListener("visibilitychange", () => document.hidden && this.stop(HIDDEN_WORDS))
     document.addEventListener("freeze", () => this.stop(HIDDEN_WORDS))
     window.addEventListener("pagehide", () => this.leave())
@@ -29,12 +37,26 @@ class PaddlePage {
     window.addEventListener("unhandledrejection", (event) => this.fail(event.reason?.message ?? event.reason))
   }
 
-  // Space and Esc stop a motor wherever the focus is.
+  // Space and Esc stop a motor wherever the focus is. Space starts none: pressed twice, or held, it would undo its own stop.
   stopByKey(event) {
-    if (!(this.source?.running || this.source?.busy) || ![" ", "Escape"].includes(event.key)) return
+    const { source } = this
+    const starts = event.key === " " && event.target.closest?.(".hl-run")
+    if (![" ", "Escape"].includes(event.key) || !(source?.driving || starts)) return
     event.preventDefault()
     event.stopImmediatePropagation()
-    this.stop()
+    if (source.driving) this.stop()
+    else if (!event.repeat) source.say(SPACE_WORDS)
+  }
+
+  // A pointer stops a motor as it goes down on Stop, wherever it is lifted; the click that may follow is no second press.
+  stopByPointer({ target }) {
+    this.stopped = Boolean(target.closest?.(this.source?.running ? "#hl-stop, .hl-run" : "#hl-stop"))
+    if (this.stopped) this.stop()
+  }
+
+  // An open list or menu keeps every key for itself, so that none could stop a motor: it stops now.
+  yieldKeys() {
+    if (this.source?.driving) this.stop(KEYLESS_WORDS)
   }
 
   // Switch the motor off.
@@ -42,7 +64,7 @@ class PaddlePage {
     if (!this.paddle || this.paddle.exchange.broken) return
     const { source } = this
     if (!source) return this.paddle.giveUp() // whatever is under way
-    if (words && source.running) source.say(words)
+    if (words && source.driving) source.say(words)
     source.press("pause")
     return undefined
   }
@@ -57,6 +79,7 @@ class PaddlePage {
     if (String(words).startsWith("ResizeObserver loop")) return // the browser's word for a picture that comes a frame later
     const { paddle, source } = this
     this.paddle = this.source = null
+    this.failed = true
     paddle?.giveUp()
     paddle?.close()
     this.say(`This page has an error, so the motor was switched off: ${words}. Load the page again.`)
@@ -76,12 +99,13 @@ class PaddlePage {
       const paddle = new PagePaddle(port, this.clock, (problem) => this.lost(problem))
       this.say("Waiting for the board. Opening a port resets many boards, which takes up to 2 s.")
       await paddle.open()
+      if (this.failed) return await paddle.close()
       this.paddle = paddle
       this.introduce()
     } catch (problem) {
-      this.say(problem.message)
+      if (!this.failed) this.say(problem.message)
     }
-    button.disabled = false
+    button.disabled = this.failed
     return undefined
   }
 
@@ -91,8 +115,9 @@ class PaddlePage {
     element("facts").replaceChildren(...paddle.facts.flatMap(([name, value]) => [make("dt", {}, [name]), make("dd", {}, [value])]))
     element("connect").textContent = "Disconnect"
     element("stop").hidden = false
-    this.say([paddle.obstacle, ...paddle.notices].filter(Boolean).join(" "))
+    this.say("")
     this.choose()
+    this.say([element("words").textContent, ...paddle.notices].filter(Boolean).join(" "))
   }
 
   disconnect() {
@@ -126,9 +151,10 @@ class PaddlePage {
     this.element("about").textContent = scene.about
     if (!this.paddle) return undefined
     this.closeView()
-    const told = scene.boards[this.paddle.board.name]
-    if (this.paddle.obstacle) return undefined
-    if (!told) return this.say(`This scene does not fit the board ${this.paddle.board.name}. Choose another one.`)
+    const { board, obstacle } = this.paddle
+    if (obstacle) return this.say(obstacle)
+    const told = Object.hasOwn(scene.boards, board.name) && scene.boards[board.name]
+    if (!told) return this.say(`This scene does not fit the board ${board.name}. Choose another one.`)
     this.source = new BoardSource(told, this.data.words, this.paddle, {
       picture: new Drawing(scene.picture),
       touching: touchingOf(scene.touching),

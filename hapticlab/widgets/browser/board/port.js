@@ -110,6 +110,7 @@ class BoardPort {
     await this.writer?.abort().catch(() => {})
     for (const half of [this.reader, this.writer]) half?.releaseLock()
     await this.port.close().catch(() => {}) // it left before
+    await this.port.forget?.().catch(() => {}) // else any page of this address could open it without asking
   }
 }
 

@@ -3,6 +3,9 @@
 
 const TIMELY = 0.5 // [s] that a press counts which starts a motor
 const CAME_LATE = "Start came late, so the motor stays off. Press Start again"
+const PAUSE = 1 // [s] from the motor's end on in which no press starts it: it was meant for Stop, or is the second of two
+const JUST_OFF = "The motor went off just now and stays off. Press Start again"
+const MISMATCH = "It met more travel than was calibrated. If this happens again, run `hapticlab calibrate` on a computer"
 const RESTS = 0.25 // [s] between two pictures, and two looks at the board, while the motor is off
 const WORDS = 0.25 // [s] after which words may change
 const SAID = 6.0 // [s] that a note stays
@@ -15,7 +18,7 @@ class BoardSource {
     Object.assign(this, { told, about: told.about, words, paddle, picture, touching, keep: save, gesture, clock })
     this.numbers = told.parameters.map((parameter) => parameter.value)
     this.period = told.T * told.every
-    Object.assign(this, { running: false, busy: false, stops: 0, homed: true, fault: "", recorder: null, player: null, log: null, moves: new Map() })
+    Object.assign(this, { running: false, busy: false, stops: 0, offSince: -Infinity, homed: true, fault: "", recorder: null, player: null, log: null, moves: new Map() })
     Object.assign(this, { note: "", noteUntil: -1, noticed: {}, last: { x: 0, F: 0 }, nextFrame: -1, nextLook: -1, nextWords: -1, status: "", vibrates: false })
     this.rows = this.freshRows(this.period)
   }
@@ -52,11 +55,17 @@ class BoardSource {
 
   // --- the motor
 
+  // Whether the motor is on, or is about to be.
+  get driving() {
+    return this.running || this.busy
+  }
+
   async start(name) {
     const pressed = this.gesture()
     if (name === "restart" && !this.running) return this.say(this.words.motor_off)
     if (this.clock.now() - pressed > TIMELY) return this.say(CAME_LATE)
     if (this.busy) return undefined
+    if (!this.running && pressed - this.offSince < PAUSE) return this.say(JUST_OFF)
     this.busy = true
     const { stops } = this
     try {
@@ -68,7 +77,10 @@ class BoardSource {
       for (const sentence of found) this.say(sentence)
     } catch (problem) {
       if (problem.result === "NOT_HOMED") this.homed = false
-      else if (!(problem instanceof Abandoned)) this.say(problem.message)
+      else if (!(problem instanceof Abandoned)) {
+        this.say(problem.message)
+        if (!problem.result) this.paddle.giveUp() // whether it runs is not known
+      }
     } finally {
       this.busy = false
       this.look()
@@ -90,12 +102,11 @@ class BoardSource {
 
   // Switch the motor off; then ask the board whether it is, and why it was before.
   async switchOff() {
-    const ran = this.running
+    if (this.driving) this.offSince = this.clock.now()
     this.running = false
     this.endReplay()
     this.stop()
     try {
-      if (!ran) return this.paddle.giveUp()
       const words = await this.paddle.stop()
       if (words) this.fault = words
     } catch (problem) {
@@ -196,9 +207,9 @@ class BoardSource {
   sampled(now) {
     const { paddle } = this
     const samples = this.running ? paddle.run?.samples() : null
-    const fault = paddle.looked()
+    const fault = this.running ? paddle.looked() : ""
     if (samples) this.notice(samples, now)
-    if (fault && this.running) {
+    if (fault) {
       this.fault = fault
       this.halt()
     } else if (now >= this.nextLook && !paddle.exchange.broken) this.lookAtBoard(now)
@@ -207,7 +218,7 @@ class BoardSource {
 
   // Now and then: is the board there, does it run, does it know where its handle is.
   async lookAtBoard(now) {
-    this.nextLook = now + RESTS
+    this.nextLook = Infinity // until it was answered: a board that is slow to answer is not asked twice
     try {
       if (this.running) {
         const words = await this.paddle.silence()
@@ -222,6 +233,8 @@ class BoardSource {
       if (problem instanceof Abandoned) return
       this.say(problem.message)
       if (this.running) this.halt() // nobody knows what the board does: it hears nothing more
+    } finally {
+      this.nextLook = this.clock.now() + RESTS
     }
   }
 
@@ -268,7 +281,8 @@ class BoardSource {
   // What goes on, in sentences.
   statusWords(now, vibrates) {
     const { words } = this
-    let said = [this.busy ? "Starting" : this.homed ? words.press_start : `${TABLES.lead}. Then press Start`, this.fault && `Stopped: ${this.fault}`]
+    const lead = [`${TABLES.lead}. Then press Start`, this.paddle.mismatch && MISMATCH]
+    let said = [...(this.busy ? ["Starting"] : this.homed ? [words.press_start] : lead), this.fault && `Stopped: ${this.fault}`]
     if (this.player) said = ["Replaying a record"]
     else if (this.running) {
       const [, , contact] = this.rows.last()
