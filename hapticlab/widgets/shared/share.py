@@ -100,9 +100,8 @@ def share(
         )
     path = Path(_file_name(scene.name) if path is None else path)
     if path.suffix.lower() not in (".html", ".htm"):  # a browser shows others as text, and a scene file would be lost
-        raise PaddleError(
-            f"path = {str(path)!r}; a browser opens a file that ends in .html. Give {str(path.with_suffix('.html'))!r}"
-        )
+        other = path.parent / f"{path.stem or 'scene'}.html"
+        raise PaddleError(f"path = {str(path)!r}; a browser opens a file that ends in .html. Give {str(other)!r}")
     slowest, fastest = SPEEDS
     why = "1 is real time, 0.1 slow motion"
     speed = number("time_scale", time_scale, "", "a shared file", least=slowest, most=fastest, why=why, error=PaddleError)
