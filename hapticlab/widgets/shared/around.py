@@ -22,7 +22,7 @@ CHANGES = (
 
 #: names that hl.wall gives to its scenes
 _WALL = re.compile(rf"({'|'.join(TAPS)}) wall(, .*)?")
-OF_A_WALL = "A spring and a damper push the handle back beyond the boundary x_o. Drag the handle there, or use the arrow keys."
+OF_A_WALL = "A spring and a damper at the boundary x_o. Drag the handle, or move it with the arrow keys."
 OF_ANY = "A simulated paddle. Drag its handle, or move it with the arrow keys."
 
 
@@ -48,7 +48,7 @@ def lead(scene):
     >>> lead(hl.library.stick_slip())
     "A block on a rough floor, pulled by the handle through the coupler's spring."
     >>> lead(hl.wall()(k=300, x_o=0.01))
-    'A spring and a damper push the handle back beyond the boundary x_o. Drag the handle there, or use the arrow keys.'
+    'A spring and a damper at the boundary x_o. Drag the handle, or move it with the arrow keys.'
     """
     known = library_name(scene)
     if not known:

@@ -24,8 +24,8 @@ ALONE = ("T", "n", "t", "v", "x")
 def scene_code(scene):
     """Return lines of Python whose ``scene`` is this scene, or None where it cannot be written out.
 
-    It was run before it is returned, and gave an equal scene. What is not written out are contacts, shapes and models of
-    SymPy's mechanics, where they do not come from the library.
+    It was run before it is returned, and gave an equal scene. What is not written out are contacts, shapes, estimates of the
+    velocity and models of SymPy's mechanics, where they do not come from the library.
 
     Parameters
     ----------
