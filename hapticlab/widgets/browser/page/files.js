@@ -1,6 +1,6 @@
 // Files that the browser keeps for a person, among their downloads.
 
-const FRAMED = ". If it is not there, the page around this frame allows no downloads: open the frame in a tab of its own"
+const FRAMED = "if the page around this frame allows downloads. Otherwise open the frame in a tab of its own"
 
 // Keep a record as a file that hapticlab reads, or as a table; return words on it.
 function keepRecord(log, told) {
@@ -14,7 +14,7 @@ function keepTable(log, told) {
 
 // A frame is not told that it may not keep files.
 function keptWords(name, more = "") {
-  return `Saved ${name}, see your downloads${more}${window.parent === window ? "" : FRAMED}`
+  return `Saved ${name}, ${window.parent === window ? `see your downloads${more}` : FRAMED}`
 }
 
 function keepFile(bytes, scene, ending, type) {
