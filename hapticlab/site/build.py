@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import shutil
 import tempfile
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 
     from ..base.annotations import File
 
-#: in a site's folder: the files that were written there, which a next build may replace
+#: in a site's folder: the files that were written there, which a next build may replace, and their digests, by which the first
+#: page finds what a browser has to load again
 RECORD = "hapticlab-site.json"
 
 
@@ -56,7 +58,7 @@ def build_site(
     Raises
     ------
     CourseError
-        If the folder holds anything else, or something is missing that the labs need.
+        If the folder holds anything else or cannot be written, or something is missing that the labs need.
     EngineMissingError
         If JupyterLite is not installed.
     """
@@ -75,10 +77,9 @@ def build_site(
         if lacking := licences.write(made):
             say(f"without a licence text: {', '.join(lacking)}. Look for their terms before you publish the site")
         (made / ".nojekyll").touch()  # GitHub's pages would leave files out
-        found = sorted(path.relative_to(made).as_posix() for path in made.rglob("*") if path.is_file())
-        (made / RECORD).write_text(json.dumps({"hapticlab": __version__, "files": found}, indent=1) + "\n", "utf-8")
+        found = {path.relative_to(made).as_posix(): _digest(path) for path in sorted(made.rglob("*")) if path.is_file()}
         size = _size(made)
-        _replace(folder, made, before)
+        _replace(folder, made, before, {"hapticlab": __version__, "files": found})
     return Site(folder, len(found) + 1, size, time.monotonic() - began)
 
 
@@ -120,12 +121,28 @@ def _gather(source, unpacked, pyodide, wheel, say):
     return {"local": _size(local) if archive else None, "wheels": _size(source / "pypi")}
 
 
-def _replace(folder, made, before):
-    """Move a site into its folder; of an earlier one only what the new one lacks goes, and other files stay."""
-    shutil.copytree(made, folder, dirs_exist_ok=True)
-    for name in before:
-        if not (made / name).exists():
+def _replace(folder, made, before, record):
+    """Copy a site into its folder; of an earlier one only what the new one lacks goes, and other files stay."""
+    old = before - {RECORD, *record["files"]}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        # all names first, without digests: what is cut off on the way is a site that the same command replaces
+        _write(folder, record | {"files": dict.fromkeys([*record["files"], *old])})
+        shutil.copytree(made, folder, dirs_exist_ok=True)
+        for name in old:
             (folder / name).unlink(missing_ok=True)
+        _write(folder, record)
+    except OSError as problem:
+        why = problem.args[0][0][2] if isinstance(problem, shutil.Error) else problem  # which has a line for every file
+        raise CourseError(f"the site could not be written to {folder}: {why}; then do the same command again") from None
+
+
+def _write(folder, record):
+    (folder / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf-8")
+
+
+def _digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
 def _size(folder):

@@ -4,7 +4,9 @@ Nothing but the site may be asked: every request beyond its address is refused a
 """
 
 import json
+import os
 import re
+import time
 from functools import partial
 from pathlib import Path
 
@@ -12,13 +14,14 @@ import pytest
 from axe import findings
 from lab import ask, grab, picture, run_all, run_cell, see, until
 from pyodide_archive import archive
-from sites import Open, open_lab, served, serving, visited, watched
+from sites import Open, Quiet, open_lab, served, serving, visited, watched
 
 import hapticlab as hl
 from hapticlab.cli.main import main
 from hapticlab.course.instructor import solved_notebook
 from hapticlab.course.labs import find_labs
 from hapticlab.site.build import RECORD, build_site
+from hapticlab.site.front_page import front_page
 from hapticlab.site.licences import parts, without_text
 from hapticlab.site.pages import PAGES
 from hapticlab.widgets.session import A_CELL_RUNS
@@ -255,7 +258,60 @@ def test_a_scene_of_the_first_page_moves_at_once_without_python(page, site):
     page.mouse.move(x + 60, y, steps=10)
     page.wait_for_function("() => window.shown.pictures > 10")
     page.mouse.up()
-    assert {name for name in asked if not name.startswith("data:")} <= {"/index.html", "/wall.html", "/notebooks/favicon.ico"}
+    assert {name for name in asked if not name.startswith("data:")} <= {
+        "/index.html",
+        "/wall.html",
+        "/notebooks/favicon.ico",
+        f"/{RECORD}",
+    }
+
+
+@pytest.fixture
+def front(tmp_path):
+    """A site of its first page and one package, both a week old, and a function that builds it with another package."""
+
+    def build(content):
+        (tmp_path / "index.html").write_text(front_page(find_labs(), local=1, wheels=1), "utf-8")
+        (tmp_path / "one.whl").write_text(content)
+        (tmp_path / RECORD).write_text(json.dumps({"files": {"one.whl": content}}))
+        week_ago = time.time() - 7 * 86400
+        for path in tmp_path.iterdir():
+            os.utime(path, (week_ago, week_ago))  # so that a browser keeps it for hours: RFC 9111, 4.2.2
+
+    build("old")
+    with serving(partial(Quiet, directory=tmp_path)) as server:
+        yield f"http://127.0.0.1:{server.server_port}", build
+
+
+@pytest.mark.wide
+def test_after_a_new_build_a_link_of_the_first_page_leads_to_the_new_files(complete, browser, front):
+    address, build = front
+    loaded = "() => fetch('one.whl').then((answer) => answer.text())"
+    with visited(browser) as page:
+        page.goto(f"{address}/index.html")
+        page.wait_for_function("() => renewing === null")
+        assert page.evaluate(loaded) == "old"
+        build("new")
+        assert page.evaluate(loaded) == "old"  # what the first page is there to mend
+        page.goto(f"{address}/index.html?again")
+        page.locator("a[href^='licences']").click()  # at once
+        page.wait_for_url("**/licences/index.html")
+        page.goto(f"{address}/missing.html")
+        assert page.evaluate(loaded.replace("'one", "'/one")) == "new"
+
+
+@pytest.mark.wide
+def test_the_first_page_says_so_where_nothing_can_be_stored(complete, browser, front):
+    with visited(browser) as page:
+        page.goto(f"{front[0]}/index.html")
+        assert not page.get_by_role("alert").is_visible()
+        page.add_init_script(
+            "Object.defineProperty(window, 'localStorage', { get() { throw new DOMException('', 'SecurityError') } })"
+        )
+        page.reload()
+        assert page.get_by_role("alert").is_visible()
+        page.locator("a[href^='licences']").click()
+        page.wait_for_url("**/licences/index.html")
 
 
 @pytest.mark.slow

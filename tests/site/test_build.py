@@ -1,14 +1,16 @@
 """What a site is made of, and the folders in which none is built; tests/browser/test_site.py has a whole one."""
 
 import json
+import shutil
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
 from hapticlab.cli.main import main
 from hapticlab.course.labs import find_labs
-from hapticlab.errors import EngineMissingError
+from hapticlab.errors import CourseError, EngineMissingError
 from hapticlab.site import build, lite
 from hapticlab.site.build import Site, build_site
 from hapticlab.site.needs import needed
@@ -87,3 +89,22 @@ def test_the_kernel_is_told_of_every_package_and_never_asks_pypi(tmp_path):
 
 def files(folder):
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_a_site_that_is_cut_off_is_replaced_by_the_next_build(tmp_path, monkeypatch):
+    made, folder = tmp_path / "made", tmp_path / "site"
+    for path in (made / "b.js", folder / "old.js", folder / "mine.txt"):
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(path.name)
+    full = shutil.Error([("b.js", "b.js", "No space left on device"), ("c.js", "c.js", "No space left on device")])
+    record = {"hapticlab": "1", "files": {"b.js": "digest"}}
+    monkeypatch.setattr(build.shutil, "copytree", mock.Mock(side_effect=full))
+    with pytest.raises(CourseError, match=f"could not be written to {folder}: No space left on device; then do") as raised:
+        build._replace(folder, made, {"old.js", build.RECORD}, record)
+    assert "c.js" not in str(raised.value)
+    monkeypatch.undo()
+    assert build.written_before(folder) == {"b.js", "old.js", build.RECORD}
+    build._replace(folder, made, build.written_before(folder), record)
+    assert (
+        files(folder).keys() == {"b.js", "mine.txt", build.RECORD} and json.loads((folder / build.RECORD).read_text()) == record
+    )
