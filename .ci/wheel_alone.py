@@ -31,6 +31,9 @@ program = hapticlab.compile(scene, T=1e-3)
 x = hapticlab.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(scene, duration=0.1, v=1.0).x
 vm, reference = (engine.load(program, name).run(len(x), x[:, None], program.values).outputs for name in ("vm", "interpreter"))
 assert (vm == reference).all() and vm.max() > 1, vm.max()
+shared = pathlib.Path("wall.html")
+hapticlab.share(scene, hapticlab.SimulatedPaddle.from_profile("hapkit"), shared)
+assert 100_000 < shared.stat().st_size < 500_000, shared.stat().st_size
 facts = json.loads(pathlib.Path("facts.json").read_text())
 assert all(hand["within_one_grid_step"] for hand in facts["hands"]), facts["hands"]
 print("wheel: ok")

@@ -7,9 +7,11 @@ delay asks more of a wall than the filter does, so that a limit errs to the safe
 from __future__ import annotations
 
 import math
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..base.arguments import what_is
 from ..base.profile.estimate import Estimate
 from ..base.profile.paddle_profile import PaddleProfile
 from ..base.profile.profile_file import SUFFIX, read_profile
@@ -105,6 +107,10 @@ eth = PaddleProfile(
     ),
 )
 PROFILES = {p.name: p for p in (hapkit, hapkit_as5048a, longhorn, motor_shield, eth)}
+_KNOWN = (
+    f"there are {', '.join(PROFILES)}, each also with {', '.join(f'_{word}' for word in VARIANTS)}. Give a file that "
+    "profile.save() wrote, such as 'bench7.json'; or for a profile of your own write hl.devices.PaddleProfile(...)"
+)
 
 
 def profile(name: File) -> PaddleProfile:
@@ -131,6 +137,8 @@ def profile(name: File) -> PaddleProfile:
     >>> print(profile("hapkit_rough")["coulomb"])
     coulomb = 0.05 N, between 0.02 and 0.08
     """
+    if not isinstance(name, str | PathLike):
+        raise PaddleError(f"a profile is given by its name or its file, not as {what_is(name)}; {_KNOWN}")
     if not isinstance(name, str) or name.endswith(SUFFIX):
         return _from_file(name)
     kind, _, variant = name.rpartition("_")
@@ -138,11 +146,7 @@ def profile(name: File) -> PaddleProfile:
         return PROFILES[name]
     if kind in PROFILES and variant in VARIANTS:
         return VARIANTS[variant](PROFILES[kind])
-    raise PaddleError(
-        f"no profile {name!r}; there are {', '.join(PROFILES)}, each also with {', '.join(f'_{word}' for word in VARIANTS)}. "
-        "Give a file that profile.save() wrote, such as 'bench7.json'; or for a profile of your own write "
-        "hl.devices.PaddleProfile(...)"
-    )
+    raise PaddleError(f"no profile {name!r}; {_KNOWN}")
 
 
 def _from_file(path):

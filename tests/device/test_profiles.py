@@ -82,5 +82,7 @@ def test_changes_and_unknown_names():
     assert (paddle.m, paddle.T, paddle.coulomb, paddle.force_max) == (hapkit.m, 5e-4, 0.1, hapkit.force_max)
     with pytest.raises(PaddleError, match="mass is not an argument of SimulatedPaddle"):
         SimulatedPaddle.from_profile(eth, mass=1)
+    with pytest.raises(PaddleError, match="by its name or its file, not as an int; there are hapkit, "):
+        profile(5)
     with pytest.raises(PaddleError, match=f"no profile 'falcon'; there are {', '.join(PROFILES)}"):
         profile("falcon")

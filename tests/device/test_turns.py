@@ -34,6 +34,23 @@ def test_a_wait_ends_when_it_is_woken(both):
     assert enough.wait(20) and done == []
 
 
+def test_a_wait_that_was_cut_short_does_not_end_the_next_one(both):
+    done, waits, over = [], both.event(), both.event()
+
+    def waiting():
+        waits.set()
+        yield 0.02
+        done.append("woken")
+        yield 1e6
+        done.append("by itself")
+        over.set()
+
+    work = turns.begin(waiting(), "wait twice")
+    assert waits.wait(20)
+    work.wake()
+    assert not over.wait(0.05) and done == ["woken"]
+
+
 def test_who_takes_a_turn_is_known(both):
     said, known, enough = [], threading.Event(), both.event()
 

@@ -9,9 +9,6 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from .array_functions import ELEMENTWISE, MOVES, SAME, SPELT
 
-#: arithmetic with no more known numbers than these is done at once; a longer line is shorter as the steps that make it
-FOLDED = 32
-
 
 class NotRecorded(BaseException):
     """What was asked of a node needs its number; no user's ``except Exception`` catches it."""
@@ -78,7 +75,7 @@ class Graph:
         shape = np.broadcast_shapes(*(node.shape for node in nodes))
         size, operands = int(np.prod(shape)), [one if one.size == 1 else self.moved(np.broadcast_to, one, shape) for one in nodes]
         known = [self.constant(node.number) for node in operands]
-        if size <= FOLDED and all(one is not None for one in known):
+        if all(one is not None for one in known):
             with np.errstate(all="ignore"):
                 return self.node(np.broadcast_to(getattr(np, name)(*known), size).reshape(shape))
         return Node(self, self.row(size, name, *(node.number for node in operands)), shape)

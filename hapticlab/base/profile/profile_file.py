@@ -34,9 +34,10 @@ def read_profile(path):
     try:
         with open(path, "rb") as file:
             data = file.read(LARGEST + 1)
-    except OSError as problem:
+    except (OSError, ValueError) as problem:  # the latter for a name that no file can have
+        why = getattr(problem, "strerror", None) or problem
         raise PaddleError(
-            f"{named}: the file cannot be read ({problem.strerror}). Give the path of a file that profile.save() wrote."
+            f"{named}: the file cannot be read ({why}). Give the path of a file that profile.save() wrote."
         ) from None
     if len(data) > LARGEST:
         raise PaddleError(f"{named} has more than {LARGEST} bytes; a profile has fewer. Give a file that profile.save() wrote.")

@@ -131,6 +131,17 @@ def test_as_many_ways_as_are_taken():
     assert [value_of(data, {"a": a}).item() for a in (-1.0, 0.5, 5.5)] == [0.0, 1.0, 63.0]
 
 
+def test_a_drawing_that_catches_every_exception_goes_both_ways():
+    def cautious(known):
+        try:
+            return 1.0 if known["a"] > 0 else 2.0
+        except Exception:
+            return 3.0
+
+    data = recorded(cautious, {"a": 0.0})
+    assert [value_of(data, {"a": a}).item() for a in (1.0, -1.0)] == [1.0, 2.0]
+
+
 def scenes():
     x, n = hl.x, hl.n
     k, x_o, x_l = hl.parameters("k x_o x_l", units="N/m m m", values=(300, 0.01, -0.01))
