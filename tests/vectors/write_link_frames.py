@@ -20,7 +20,8 @@ from hapticlab.device.link.messages import MESSAGES, PROTOCOL, SETTINGS_STRUCT  
 from hapticlab.device.link.wire import Decoder, decode, encode, stuff, unstuff  # noqa: E402
 
 FILE = HERE / "link_frames.json"
-SESSION = 0x7FFF_FFF0
+#: its lowest bits are up, so that a guard that does not add the turns of the sequence differs
+SESSION = 0x7FFF_FFFF
 #: of streams: so many frames of the board are enough
 FRAMES = 24
 
@@ -78,6 +79,7 @@ def session():
     for k in range(8):
         host.tick(100 * k)
     host.state()
+    assert host.ask("STOP") == "OK" and host.start(passive=1) == "OK"
     assert host.ask("STOP") == "OK" and host.start() == "OK"
     host.tick(9000, times=2)
     assert host.faults and host.ask("CLEAR") == "OK" and host.ask("ARM", 0) == "OK"
