@@ -48,6 +48,15 @@ AROUND = """async ([wasm, store, known]) => {
   frame.src = "/paddle.html#start=1;k=900"
 }"""
 DOCUMENT, WINDOW = "frame.contentDocument", "frame.contentWindow"
+#: keeps what is written into pictures from here on
+TEXTS = """() => {
+  const write = CanvasRenderingContext2D.prototype.fillText
+  window.texts = []
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+    texts.push(text)
+    write.call(this, text, ...at)
+  }
+}"""
 #: a press just after the motor went off starts nothing; the fake's tick is 1 ms
 RESTED = "board.duties.slice(-1100).every((duty) => duty === 0)"
 #: what a test made of the page's document and scene is as before
@@ -240,6 +249,12 @@ def test_a_press_that_was_meant_for_stop_never_starts(bench):
         bench.page.evaluate("tick = board.ticks; board.v = 4")
         bench.until("said().includes('OVER_SPEED')")
         keys.press("Enter")
+        bench.until("said().includes('just now')")
+        said = bench.frame.locator(".hl-said")
+        assert said.evaluate("(said) => said.scrollHeight <= said.clientHeight"), "what to do is cut off"
+        bench.inside.evaluate(TEXTS)
+        bench.until(f"{WINDOW}.texts.some((text) => text.startsWith('motor'))")
+        assert set(bench.inside.evaluate("texts.filter((text) => text.startsWith('motor'))")) == {"motor 0.0 N"}
 
     def dragged(_):
         mouse.down()

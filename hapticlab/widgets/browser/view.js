@@ -227,7 +227,9 @@ class View {
     if (!frame || this.closed) return
     const theme = this.theme(now)
     const last = (name) => this.samples.last(name)
-    const state = { F: last("F"), x: last("x"), intent: last("intent"), contact: last("contact") === 1, running: Boolean(this.flags.running) && !this.silent }
+    const { running, motor, replaying } = this.flags
+    const isOff = this.about.kind === "board" && !replaying && !(motor && !this.silent) // the last force is over
+    const state = { F: isOff ? 0 : last("F"), x: last("x"), intent: last("intent"), contact: last("contact") === 1, running: Boolean(running) && !this.silent }
     this.picture.draw(frame.shape, between(frame, next, part), theme, state)
     const stands = this.traces.zoomed && this.traces.speed >= 0.5 && this.flags.running
     if (this.due("tracedAt", now, stands ? CALM : TRACED) || !frame.rows.length) {

@@ -112,7 +112,7 @@ class PaddlePage {
   // Say what the board is, and what must be done on a computer first.
   introduce() {
     const { paddle, element } = this
-    element("facts").replaceChildren(...paddle.facts.flatMap(([name, value]) => [make("dt", {}, [name]), make("dd", {}, [value])]))
+    element("facts").replaceChildren(...paddle.facts.map(([name, value]) => make("div", {}, [make("dt", {}, [name]), make("dd", {}, [value])])))
     element("connect").textContent = "Disconnect"
     element("stop").hidden = false
     this.say("")
