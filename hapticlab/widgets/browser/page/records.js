@@ -41,8 +41,8 @@ class Replay {
     for (const [since, numbers] of log.changes) {
       for (const [name, value] of Object.entries(numbers)) {
         if (Object.hasOwn(log.columns, name)) continue
-        const known = Object.hasOwn(this.columns, name) ? this.columns[name] : new Float64Array(size).fill(this.parameters[name] ?? NaN)
-        this.columns[name] = known.map((before, k) => (log.columns.t[k] >= since - log.T / 2 ? value : before))
+        if (!Object.hasOwn(this.columns, name)) this.columns[name] = new Float64Array(size).fill(this.parameters[name] ?? NaN)
+        this.columns[name].fill(value, Math.max(0, Math.round(since / log.T)))
       }
     }
   }
