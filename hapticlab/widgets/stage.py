@@ -25,6 +25,9 @@ RESTING = 4.0
 LOOK, NOTE = 0.25, 6.0
 #: a press that starts a motor counts for so long [s]
 TIMELY = 0.5
+#: from the end of a motor on no press starts it for so long [s]: it was meant for Stop, or is the second of two
+QUIET = 1.0
+JUST_OFF = "The motor went off just now and stays off. Press Start again"
 #: a handle that was let go is caught so far past where a hand goes [m]
 PAST = 5e-3
 CAME_LATE = "Start came late, or just after the notebook was silent: press it again"
@@ -57,7 +60,7 @@ class Stage:
         self.touches, self.clock = touched is not None, clock
         self.awake, self._wants_to_run, self._goes_on = False, self.source.kind == "simulated", False
         self.stopped = "time stood still" if self._wants_to_run else "the motor went off"
-        self.caught = None
+        self.caught, self.quiet, self._motor, self._off_since = None, QUIET, False, -math.inf
         self._note, self._note_until, self._lost, self._vibration = "", -1.0, "", ""
         self._status, self._next_look, self._next_frame = "", -1.0, -1.0
 
@@ -121,10 +124,22 @@ class Stage:
 
     def _pressed(self, name, when):
         """Do what a press asks for that was made at a time; the hand of a late one has left the board's handle."""
-        if name in ("start", "resume", "restart") and self.source.kind == "board" and self.clock() - when > TIMELY:
+        starts = name in ("start", "resume", "restart") and self.source.kind == "board"
+        self._watch_motor()
+        if starts and self.clock() - when > TIMELY:
             self.tell(CAME_LATE)
+        elif starts and not self._motor and when - self._off_since < self.quiet:
+            self.tell(JUST_OFF)
         else:
             self.guarded(getattr(self, name))
+            self._watch_motor()
+
+    def _watch_motor(self):
+        """Note when a board's motor went off, for whatever reason."""
+        on = self.motion.running and self.source.motor
+        if self._motor and not on:
+            self._off_since = self.clock()
+        self._motor = on
 
     def advance(self, wanted):
         """Go on to the clock, with a hand that means to be at a place [m]; return a frame's rows, or None.
@@ -134,6 +149,7 @@ class Stage:
         running, recording = self.motion.running, self.motion.recording
         rows = self.guarded(self.motion.advance, wanted)
         self.guarded(self._go_on)
+        self._watch_motor()
         if running and not self.motion.running:
             self.look()
         low, high = self.picture.reach

@@ -8,7 +8,7 @@ from hapticlab.device.board.streaming import LEAD, LEASH
 from hapticlab.device.link.messages import STATES
 from hapticlab.widgets.plain.plain_view import PlainFront
 from hapticlab.widgets.session import GAP, SILENCE, STEADY, Session
-from hapticlab.widgets.stage import CAME_LATE, TIMELY
+from hapticlab.widgets.stage import CAME_LATE, QUIET, TIMELY
 
 WALL = hl.wall("ellis")(k=150, x_o=0.002)
 HAND = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch", intent=0.01))
@@ -98,7 +98,7 @@ def test_a_restart_that_is_refused_says_why_and_no_other_cell_is_blamed(board, m
     assert "the handle is too far out" in stage.session.status and "another cell" not in stage.session.status
     assert stage.session.status.startswith("Motor off: press Start")
     monkeypatch.undo()
-    stage.press("start").go(0.1)
+    stage.go(QUIET).press("start").go(0.1)
     assert stage.is_running
 
 
@@ -274,9 +274,25 @@ def test_a_fault_is_told_and_start_clears_it(board):
     assert not stage.is_running
     assert "OVER_SPEED" in stage.session.status
     assert not stage.frames[-1].flags["motor"]
-    stage.press("start").go(0.2)
+    stage.go(QUIET).press("start").go(0.2)
     assert stage.is_running
     assert "OVER" not in stage.session.status
+
+
+@pytest.mark.parametrize("how", ["pause", "fault"])
+def test_a_press_that_was_meant_for_stop_starts_nothing(board, how):
+    """The second of two presses of a button that stops and starts, and a Stop that a fault was faster than."""
+    stage = Stage(board).press("start").go(0.2)
+    if how == "fault":
+        board.exchange.port.lead(0.045)
+        board.exchange.port.handle.v = 3.0  # faster than a handle may be
+        stage.go(0.1)
+    for press in ("pause", "start", "resume", "restart") if how == "pause" else ("start", "resume"):
+        stage.press(press).go(0.1)
+        assert not stage.is_running
+    assert "The motor went off just now" in stage.press("start").session.status
+    stage.go(QUIET).press("start")
+    assert stage.is_running
 
 
 def test_another_cell_takes_the_paddle(board):
@@ -313,7 +329,7 @@ def test_a_board_that_cannot_be_told_to_stop_is_abandoned_in_words(board, monkey
     assert not stage.is_running
     assert not board.exchange.beating
     monkeypatch.undo()
-    stage.press("start").go(0.1)
+    stage.go(QUIET).press("start").go(0.1)
     assert stage.is_running
 
 

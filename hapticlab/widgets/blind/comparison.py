@@ -109,6 +109,7 @@ class BlindComparison:
         self._order, self._trials, self._missed = np.random.default_rng(seed), [], 0
         scene = task.scene(**{task.parameter: task.standard})
         self._session = Session(self._paddle, scene, sliders={}, show_force=False, **session)
+        self._session.stage.quiet = 0.0  # a presentation ends by itself, and no key both starts and stops
         self._seconds, self._box, self._head, self._rehearsed = {"duration": duration, "pause": pause}, None, None, None
         self._words = Words(self._session.clock)
         self._next_pair()

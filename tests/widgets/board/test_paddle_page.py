@@ -15,6 +15,7 @@ from hapticlab.widgets.board_page.programs import choices, labs, page_data
 from hapticlab.widgets.browser_view import BROWSER, SCRIPTS
 from hapticlab.widgets.shared.document import VIEW_SCRIPTS
 from hapticlab.widgets.shared.page import PAGE_SCRIPTS
+from hapticlab.widgets.stage import QUIET, TIMELY
 
 
 def script(names):
@@ -44,6 +45,11 @@ def test_nothing_but_a_press_opens_a_port_or_starts_a_motor():
     for word in ways_in:
         assert word not in own, word
     assert own.count("requestPort") == 1
+
+
+def test_a_press_counts_as_long_as_in_a_notebook():
+    for name, value in ("TIMELY", TIMELY), ("QUIET", QUIET):
+        assert float(re.search(rf"const {name} = ([\d.]+)", script(["board/source.js"]))[1]) == value
 
 
 def test_the_page_asks_for_nothing_and_runs_its_own_script_alone(wall):

@@ -3,7 +3,7 @@
 
 const TIMELY = 0.5 // [s] that a press counts which starts a motor
 const CAME_LATE = "Start came late, so the motor stays off. Press Start again"
-const PAUSE = 1 // [s] from the motor's end on in which no press starts it: it was meant for Stop, or is the second of two
+const QUIET = 1 // [s] from the motor's end on in which no press starts it: it was meant for Stop, or is the second of two
 const JUST_OFF = "The motor went off just now and stays off. Press Start again"
 const MISMATCH = "It met more travel than was calibrated. If this happens again, run `hapticlab calibrate` on a computer"
 const RESTS = 0.25 // [s] between two pictures, and two looks at the board, while the motor is off
@@ -65,7 +65,7 @@ class BoardSource {
     if (name === "restart" && !this.running) return this.say(this.words.motor_off)
     if (this.clock.now() - pressed > TIMELY) return this.say(CAME_LATE)
     if (this.busy) return undefined
-    if (!this.running && pressed - this.offSince < PAUSE) return this.say(JUST_OFF)
+    if (!this.running && pressed - this.offSince < QUIET) return this.say(JUST_OFF)
     this.busy = true
     const { stops } = this
     try {
