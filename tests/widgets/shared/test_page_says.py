@@ -6,10 +6,11 @@ import re
 
 import numpy as np
 import pytest
-from page_in_node import NODE, array, in_node, text
+from page_in_node import NODE, array, evaluated, in_node, text
 
 import hapticlab as hl
 from hapticlab.analysis.records import chatter, chatter_signs
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.compiler.tick.live_limits import limits_apart
 from hapticlab.device.live_parameters import checked
 from hapticlab.errors import ParameterError
@@ -193,6 +194,22 @@ def test_noise_is_white_and_normal_and_the_same_for_the_same_seed():
         assert abs(np.corrcoef(drawn[1:], drawn[:-1])[0, 1]) < 4 / math.sqrt(20_000)
         assert abs(np.mean(drawn**4) - 3) < 0.25
     assert abs(np.corrcoef(first, other)[0, 1]) < 4 / math.sqrt(20_000)
+
+
+def test_parameters_in_a_replay_change_at_the_samples_of_python():
+    """Also those changed before the first sample and after the last, and at periods that are no exact numbers."""
+    rng, expected, logs = np.random.default_rng(1), [], []
+    for T in (1e-4, 3.7e-4, 0.02):
+        t, begin = np.arange(500) * T, 137 * T  # as a page and Python count it from the start of a recording
+        at = np.sort(rng.integers(-5, 505, 40))
+        changes = [((137 + k) * T - begin, {"k": 1.0 * k, **({"B": 2.0 * k} if k % 2 else {})}) for k in at.tolist()]
+        log = Telemetry(t=t, x=t, v=t, F=t, T=T, parameters={"k": 1.0, "B": 0.5}, changes=changes)
+        expected.append(view_recorder.Replay(log, 1.0, 0.0).take(math.inf))
+        logs.append({"columns": {"t": t.tolist()}, "parameters": log.parameters, "changes": changes, "T": T})
+    taken = "logs.map((log) => new Replay({ ...log, columns: { t: Float64Array.from(log.columns.t) } }, 1, 0).take(Infinity))"
+    columns = f"{taken}.map((one) => ['k', 'B'].map((name) => [...one[name]]))"
+    for found, known in zip(evaluated(["rows.js", "records.js"], columns, logs=logs), expected, strict=True):
+        assert found == [known["k"].tolist(), known["B"].tolist()]
 
 
 #: constants of a page -> what they are in Python
