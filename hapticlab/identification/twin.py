@@ -58,7 +58,8 @@ def identify_twin(
     Raises
     ------
     AnalysisError
-        If a constant was found twice, the mass not at all, or with an encoder other than that of ``base``.
+        If nothing was found and nothing is given, or a constant was found twice, the mass not at all, or with an encoder
+        other than that of ``base``.
 
     Examples
     --------
@@ -71,6 +72,11 @@ def identify_twin(
     >>> 240.0 in twin.predict(hl.passivity_limit)  # 2 b/T of the true paddle [N/m]
     True
     """
+    if not found and not constants:
+        raise AnalysisError(
+            "hl.identify.twin was given nothing that was found, so its profile would only call its base measured. Give what "
+            "hl.identify.paddle, handle or motor found, or constants that you know exactly, such as m='34 g'"
+        )
     rest, day = _base(base), date or calendar.today().isoformat()
     estimates: dict[str, Estimate] = {}
     for one in found:

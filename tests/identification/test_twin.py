@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import hapticlab as hl
 from hapticlab.device.board.settings import nominal
@@ -119,7 +120,27 @@ def test_an_unexplained_fit_says_so_in_its_twin(found):
     assert "sensor_noise" not in {one.name for one in twin.estimates}
 
 
+def test_counting_takes_from_what_a_record_says_of_its_noise(found):
+    """Fisher's information of a deviation in counts of noise around every place within a count, by summing over counts."""
+    sigma, step, known = found.sigma / found.quantum, 1e-5, found.profile(base="hapkit")["sensor_noise"]
+    edges = np.arange(-12, 13)[:, None] - np.linspace(0, 1, 200, endpoint=False)
+    low, high = (np.diff(stats.norm.cdf(edges / (sigma + way * step)), axis=0) for way in (-1, 1))
+    seen = low > 1e-12
+    information = np.sum(((high - low)[seen] / (2 * step)) ** 2 / low[seen]) / 200
+    half = stats.norm.ppf(0.975) * found.quantum / np.sqrt(information * len(found.measured))
+    assert known.half_width == pytest.approx(half, rel=0.05) and known.half_width > 1.15 * 1.96 * found.sigma / np.sqrt(
+        2 * len(found.measured)
+    )
+
+
+def test_without_dither_no_noise_is_known(found):
+    assert "sensor_noise" not in {one.name for one in replace(found, counted=False).profile(base="hapkit").estimates}
+
+
 def test_what_does_not_fit_together_is_refused(found):
+    with pytest.raises(AnalysisError, match="was given nothing that was found, so its profile would only call its base measured"):
+        hl.identify.twin("mine", base="hapkit")
+    assert hl.identify.twin("mine", base="hapkit", m="34 g").m == 0.034
     with pytest.raises(AnalysisError, match="m was found twice. Identify all records together"):
         hl.identify.twin("mine", found, found)
     with pytest.raises(AnalysisError, match="the fit was made with 78125 counts per metre, and longhorn has 1348"):
