@@ -52,7 +52,7 @@ def archive():
     Raises
     ------
     NoPyodideError
-        If npm or PyPI cannot be reached, or if a file is not the pinned one.
+        If npm or PyPI cannot be reached, if a file is not the pinned one, or if the folder is not as its lock file says.
     """
     if os.environ.get(NAMED):
         return _complete(Path(os.environ[NAMED]).resolve())
@@ -67,19 +67,32 @@ def archive():
             except OSError:
                 if not folder.exists():  # another process was faster
                     raise
-    return folder
+    return _complete(folder)
 
 
 def _complete(folder):
-    missing = [name for name in (LOCK, *CORE) if not (folder / name).is_file()]
-    if missing:
-        raise NoPyodideError(f"{NAMED} is {folder}, which has no {', '.join(missing)}. Give a folder of Pyodide.")
+    """Return the folder once all is there: where a package is missing, Pyodide goes on without it, and a test fails far away."""
+    wrong, packages = [name for name in (LOCK, *CORE) if not (folder / name).is_file()], {}
+    if not wrong:
+        try:
+            packages = json.loads((folder / LOCK).read_text("utf-8"))["packages"]
+        except (ValueError, KeyError):
+            wrong = [LOCK]
     pinned = re.findall(r"^([\w-]+)==", PINS[2].read_text("utf-8"), re.M)
-    packages = json.loads((folder / LOCK).read_text("utf-8"))["packages"]
-    missing = sorted({*OFFICIAL, *pinned} - {"open-webui", *packages})
-    if missing:
-        raise NoPyodideError(f"{NAMED} is {folder}, whose {LOCK} does not list {', '.join(missing)}. Add these packages.")
+    unlisted = sorted({*OFFICIAL, *pinned} - {"open-webui", *packages})
+    if not wrong and unlisted:
+        raise NoPyodideError(f"{folder} has a {LOCK} that does not list {', '.join(unlisted)}. Add these packages.")
+    wrong += [e["file_name"] for e in packages.values() if _digest(folder / e["file_name"]) != e["sha256"]]
+    if wrong:
+        raise NoPyodideError(
+            f"{folder} is no whole folder of Pyodide: {', '.join(wrong[:5])} is missing or damaged. A folder in the "
+            f"user's cache is made again after you delete it. Otherwise, name a whole folder of Pyodide in {NAMED}."
+        )
     return folder
+
+
+def _digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else None
 
 
 def _make(aside):

@@ -2,12 +2,13 @@
 
 import hashlib
 import json
+import re
 from importlib.metadata import requires
 
 import pyodide_archive
 import pytest
 from packaging.utils import canonicalize_name
-from pyodide_archive import CORE, LOCK, NAMED, NoPyodideError, archive, needed
+from pyodide_archive import CORE, LOCK, NAMED, OFFICIAL, PINS, NoPyodideError, archive, needed
 
 
 @pytest.fixture
@@ -40,14 +41,32 @@ def test_the_archive_holds_what_its_lock_file_lists_and_what_hapticlab_needs():
     assert all(need.specifier.contains(packages[canonicalize_name(need.name)]["version"]) for need in asked)
 
 
-def test_a_folder_that_is_no_pyodide_is_named(fresh, tmp_path, monkeypatch):
+def test_a_folder_that_is_no_whole_pyodide_is_named(fresh, tmp_path, monkeypatch):
     monkeypatch.setenv(NAMED, str(tmp_path))
-    with pytest.raises(NoPyodideError, match=f"{NAMED} is .*, which has no {LOCK}, pyodide.mjs.* Give a folder of Pyodide"):
+    with pytest.raises(NoPyodideError, match=f"no whole folder of Pyodide: {LOCK}, pyodide.mjs.* is missing .* in {NAMED}"):
         archive()
-    for name in CORE:
-        (tmp_path / name).touch()
+    for name in (LOCK, *CORE, "numpy.whl"):
+        (tmp_path / name).write_bytes(b"given")
+    with pytest.raises(NoPyodideError, match=f": {LOCK} is missing or damaged. A folder in the user's cache is made again"):
+        archive()
     (tmp_path / LOCK).write_text('{"packages": {"numpy": {}}}')
-    with pytest.raises(NoPyodideError, match=f"whose {LOCK} does not list anywidget, .* scipy, .*. Add these packages"):
+    with pytest.raises(NoPyodideError, match=f"has a {LOCK} that does not list anywidget, .* scipy, .*. Add these packages"):
+        archive()
+    listed = [*OFFICIAL, *re.findall(r"^([\w-]+)==", PINS[2].read_text("utf-8"), re.M)]
+    entry = {"file_name": "numpy.whl", "sha256": hashlib.sha256(b"given").hexdigest()}
+    (tmp_path / LOCK).write_text(json.dumps({"packages": dict.fromkeys(listed, entry)}))
+    assert archive() == tmp_path.resolve()
+    archive.cache_clear()
+    (tmp_path / "numpy.whl").write_bytes(b"giv")
+    with pytest.raises(NoPyodideError, match=": numpy.whl, .* is missing or damaged"):
+        archive()
+
+
+def test_a_kept_folder_that_was_damaged_is_named(fresh, tmp_path, monkeypatch):
+    monkeypatch.delenv(NAMED, raising=False)
+    monkeypatch.setattr(pyodide_archive, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(pyodide_archive, "_make", lambda aside: (aside / "archive").mkdir() or aside / "archive")
+    with pytest.raises(NoPyodideError, match=f"{tmp_path}/pyodide-.* is no whole folder of Pyodide"):
         archive()
 
 
