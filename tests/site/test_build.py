@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import subprocess
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from unittest import mock
@@ -85,6 +86,13 @@ def test_the_kernel_is_told_of_every_package_and_never_asks_pypi(tmp_path):
     assert files(Path(listed)).keys() == {
         "README.md", *(f"{lab.name}/{path}" for lab in find_labs() for path in (lab.notebook.name, "checks.py")),
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(("code", "said"), [(0, "TaskError - taskid:static"), (1, "no space left")])
+def test_a_builder_that_fails_is_told_also_where_it_returns_0(tmp_path, monkeypatch, code, said):
+    monkeypatch.setattr(lite.subprocess, "run", lambda command, **_: subprocess.CompletedProcess(command, code, said, ""))
+    with pytest.raises(CourseError, match=f"JupyterLite's builder failed; it said:\n{said}"):
+        lite.build(tmp_path, tmp_path / "made")
 
 
 def files(folder):

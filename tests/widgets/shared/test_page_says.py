@@ -11,6 +11,7 @@ from page_in_node import NODE, array, evaluated, in_node, text
 import hapticlab as hl
 from hapticlab.analysis.records import chatter, chatter_signs
 from hapticlab.base.telemetry import Telemetry
+from hapticlab.compiler.ir.notes import ParameterNote
 from hapticlab.compiler.tick.live_limits import limits_apart
 from hapticlab.device.live_parameters import checked
 from hapticlab.errors import ParameterError
@@ -74,7 +75,13 @@ def refusals_case():
         tried.append({name: values[name] * (ends[name] / values[name]) ** part for name in ("K", "k")})
     expected = [refused(program, given) for given in tried]
     assert sum(map(bool, expected)) >= 6 and "" in expected and any("fractions" in words for words in expected)
-    return [("words", {"name": "refusal", "given": [told, values, given]}) for given in tried], expected
+    asked = [("words", {"name": "refusal", "given": [told, values, given]}) for given in tried]
+    felt = hl.contact.penalty(k=hl.parameters("k_c", units="N/m", values=500.0))
+    program = PLAIN.program(hl.library.ball_on_the_paddle(contact_law=felt))
+    told, given = parameters_told(program), {"k_c": 1e7}
+    assert ParameterNote in map(type, program.notes) and "lasts 10 steps" in refused(program, given)
+    asked.append(("words", {"name": "refusal", "given": [told, {each["name"]: each["value"] for each in told}, given]}))
+    return asked, [*expected, refused(program, given)]
 
 
 def names_case():

@@ -99,6 +99,13 @@ def test_a_page_says_which_hapticlab_made_it_and_not_who(hostile):
     assert shared.bytes == len(text.encode()) == shared.path.stat().st_size < 500_000
 
 
+def test_a_record_of_a_page_will_know_how_late_the_paddle_is(tmp_path):
+    late = hl.SimulatedPaddle(m=0.05, b=0.1, T=2e-3, delay=4e-4, sensor_delay=7e-4, hand=hl.Hand("pinch"))
+    path = hl.share(hl.wall()(k=300, x_o=0.01), late, tmp_path / "late.html").path
+    told = json.loads(Elements(path.read_text("utf-8")).scripts[0])
+    assert (told["T"], told["delay"], told["sensor_delay"]) == (2e-3, 4e-4, 7e-4)
+
+
 def test_the_same_scene_is_the_same_file(tmp_path):
     texts = [hl.share(hl.wall()(k=300, x_o=0.01), PADDLE, tmp_path / name).path.read_bytes() for name in ("a.html", "b.html")]
     assert texts[0] == texts[1]
