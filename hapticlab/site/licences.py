@@ -28,7 +28,12 @@ WITHOUT_A_TEXT = {
     "@jupyter": "jupyterlab.txt", "@lumino/": "jupyterlab.txt", "@microsoft/fast": "mit.txt",
     "json-schema-merge-allof": "mit.txt", "vega": "vega.txt", "pyserial": "pyserial.txt",
 }  # fmt: skip
+#: packages whose wheels of Pyodide contain compiled libraries of others, and bring only their own text -> the texts of these
+LIBRARIES = {
+    "matplotlib": ("matplotlib.txt", "freetype.txt"), "pillow": ("pillow.txt", "freetype.txt"), "scipy": ("openblas.txt",),
+}  # fmt: skip
 LICENCE = re.compile(r"licen[cs]e|copying|notice|authors", re.I)
+CODE = {".py", ".pyi", ".pyc", ".json", ".js", ".html"}
 HEAD = """<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -165,8 +170,12 @@ def _installed(name):
 
 
 def _of_wheel(wheel):
-    """Return the licence texts of a wheel."""
+    """Return the licence texts of a wheel: its own, those of fonts and sources in it, and those of compiled libraries in it."""
+    package = normal(wheel.name.partition("-")[0])
     with zipfile.ZipFile(wheel) as packed:
-        names = [name for name in packed.namelist() if ".dist-info/" in name and LICENCE.search(name.rpartition("/")[2])]
-        texts = [packed.read(name).decode("utf-8", "replace") for name in names]
-    return "\n\n".join(texts) or _instead(normal(wheel.name.partition("-")[0]))
+        names = [path for path in map(PurePosixPath, packed.namelist()) if LICENCE.search(path.name) and path.suffix not in CODE]
+        texts = [packed.read(str(path)).decode("utf-8", "replace") for path in names]
+        own = any(path.parts[0].endswith(".dist-info") for path in names)
+        compiled = any(name.endswith(".so") for name in packed.namelist())
+    brought = map(_brought, LIBRARIES.get(package, ())) if compiled else ()
+    return "\n\n".join([*([] if own else filter(None, [_instead(package)])), *texts, *brought])

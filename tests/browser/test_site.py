@@ -9,6 +9,7 @@ import re
 import time
 from functools import partial
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 from axe import findings
@@ -102,6 +103,12 @@ def points(path, capsys):
     return re.search(r"(\S+) of 10 points", capsys.readouterr().out)[1]
 
 
+def compiled(folder):
+    """The folders of compiled libraries in the wheels of a site."""
+    found = (ZipFile(path).namelist() for path in folder.glob("static/pyodide/*.whl"))
+    return {name.partition("/")[0] for names in found for name in names if name.endswith(".so")}
+
+
 @pytest.mark.wide
 @pytest.mark.long
 def test_a_site_has_the_labs_what_they_need_and_a_licence_text_for_every_file(built):
@@ -120,6 +127,16 @@ def test_a_site_has_the_labs_what_they_need_and_a_licence_text_for_every_file(bu
             assert found[f"files/{lab.name}/{path.name}"].read_bytes() == path.read_bytes()
     assert not [name for name in found if "solution" in name or "hidden.py" in name or name.endswith(".map")]
     assert [name for name in without_text(parts(made.folder)) if name not in others] == []
+    texts = {path.stem.rstrip("-0123456789"): path.read_text("utf-8") for path in (made.folder / "licences").glob("*.txt")}
+    inside = {
+        "scipy": "OpenBLAS",
+        "matplotlib": "Bitstream Vera",
+        "pillow": "Independent JPEG Group",
+        "numpy": "Max-Planck-Society",
+    }
+    assert all(words in texts[name] for name, words in inside.items())
+    assert all("The FreeType Project" in " ".join(texts[name].split()) for name in ("matplotlib", "pillow"))
+    assert {name for name in compiled(made.folder) if name.endswith(".libs")} == {"scipy.libs"}  # licences.LIBRARIES has its text
 
 
 @pytest.mark.wide

@@ -75,6 +75,19 @@ def test_packages_and_fonts_without_a_text_are_named(site):
     }
 
 
+def test_a_wheel_brings_the_texts_of_fonts_and_compiled_libraries_in_it_too(site):
+    folder = site / "static" / "pyodide"
+    with zipfile.ZipFile(folder / "scipy-1.0-cp314-cp314-wasm32.whl", "w") as packed:
+        for name in ("scipy/qhull/COPYING.txt", "scipy/license.py", "scipy-1.0.dist-info/LICENSE", "scipy.libs/libopenblas.so"):
+            packed.writestr(name, f"text of {name}")
+    write(site)
+    text = (site / "licences" / "scipy-1-0.txt").read_text()
+    assert "text of scipy/qhull/COPYING.txt" in text and "text of scipy-1.0.dist-info/LICENSE" in text and ".py" not in text
+    assert "The OpenBLAS Project" in text and "The University of Tennessee" in text  # LAPACK is inside
+    wheel(site / "pypi" / "scipy-2.0-py3-none-any.whl", LICENSE="of Python alone")
+    assert "OpenBLAS" not in next(part.text for part in parts(site) if part.name == "scipy 2.0")
+
+
 def test_a_page_that_is_added_is_hapticlabs(site, monkeypatch):
     (site / "more.html").write_text("page")
     assert without_text(parts(site)) == ["more.html"]
