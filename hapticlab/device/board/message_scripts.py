@@ -7,10 +7,10 @@ import json
 import sys
 from pathlib import Path
 
-from ...compiler.boards.board_records import BOARDS
+from ...compiler.boards.board_records import BOARDS, Drive
 from ..link import exchange, messages, serial_ports
 from ..live_parameters import MOST_AT_ONCE
-from . import greeting, host_board, run, serial_paddle, streaming, upload
+from . import greeting, host_board, serial_paddle, streaming, upload
 
 NOTICE = "// Written by hapticlab/device/board/message_scripts.py: change the Python tables, not this file.\n"
 
@@ -35,6 +35,7 @@ def tables():
         "unchecked_force": messages.UNCHECKED_FORCE_N,
         "baudrate": serial_ports.BAUDRATE,
         "usb": [{"vendor": usb.vendor, "product": usb.product, "words": usb.words} for b in BOARDS.values() for usb in b.usb],
+        "drives": [name for name, board in BOARDS.items() if isinstance(board.flashing, Drive)],
         "heartbeat": exchange.HEARTBEAT,
         "patience": exchange.PATIENCE,
         "tries": exchange.TRIES,
@@ -45,7 +46,6 @@ def tables():
         "lead": streaming.LEAD,
         "piece": upload.PIECE,
         "set_at_once": MOST_AT_ONCE,
-        "row_types": run.ROW_TYPES,
         "store_bytes": host_board.STORE_BYTES,
         "duty_full": host_board.DUTY_FULL,
     }
@@ -53,8 +53,7 @@ def tables():
 
 #: tables and numbers of messages.py that go as they are
 _PLAIN = (
-    "LARGEST_PAYLOAD", "RESULTS", "FAULTS", "STATES", "TARGETS", "FLAGS", "SAMPLE_FLAGS", "OPTIONS", "RESET_CAUSES", "SENSORS",
-    "DRIVES", "MOTOR_LAWS",
+    "RESULTS", "FAULTS", "STATES", "TARGETS", "FLAGS", "SAMPLE_FLAGS", "RESET_CAUSES", "SENSORS",
 )  # fmt: skip
 
 

@@ -369,8 +369,8 @@ const scenarios = {
     b.port.onWire = (bytes) => {
       const frame = b.page.decodeFrame(bytes.slice(0, bytes.indexOf(0)))
       if (frame?.message !== "WELCOME") return bytes
-      const { table, ...rest } = b.page.fieldsOf(frame)
-      return b.page.encodeFrame("WELCOME", frame.sequence, [table ^ 1, ...Object.values(rest)])
+      const { table, board, ...rest } = b.page.fieldsOf(frame)
+      return b.page.encodeFrame("WELCOME", frame.sequence, [table ^ 1, Buffer.from("pico\0\0\0\0"), ...Object.values(rest)])
     }
     return { words: await b.connect(), said: [...new Set(b.said())], closed: b.port.closed }
   },
@@ -393,6 +393,11 @@ const scenarios = {
     const b = await bench()
     b.board.powered = false
     return { words: await b.connect(), seconds: b.clock.now(), closed: b.port.closed }
+  },
+  async "noise answers"() {
+    const b = await bench()
+    b.port.onWire = (bytes) => noise(Uint8Array.from({ length: 5000 }, (_, k) => bytes[k % bytes.length]))
+    return { words: await b.connect(), said: [...new Set(b.said())], closed: b.port.closed }
   },
   async "resets as it opens"() {
     const b = await bench()

@@ -129,7 +129,8 @@ def test_a_fault_is_told_in_the_packages_words_and_start_begins_again(found):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("another version", "a different version of the messages"), ("port taken", "Another tab or program may use it"),
+        ("another version", "a different version of the messages"), ("another version", "run `hapticlab flash --board pico`."),
+        ("noise answers", "No paddle answered within 3 s"), ("port taken", "Another tab or program may use it"),
         ("no port chosen", "No port was chosen"), ("no API", "Use Chrome or Edge"),
         ("nothing answers", "No paddle answered within 3 s"),
         ("an encoder that is too fast", "the encoder gives 2e+05 edges per second"),

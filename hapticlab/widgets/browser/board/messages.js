@@ -33,7 +33,6 @@ const TABLES = {
     "STATUS": ["STATE"],
     "READ": ["BYTES"],
   },
-  largest_payload: 48,
   results: {
     "OK": [0, "nothing is wrong"],
     "SIZE": [1, "the program is incomplete, or longer than its header says: send it again"],
@@ -103,9 +102,6 @@ const TABLES = {
     "OVERRUN": 2,
     "FIRST": 4,
   },
-  options: {
-    "PASSIVE": 1,
-  },
   reset_causes: {
     "POWER_OR_RESET": [0, "power-on or reset (the bootloader hides which)"],
     "POWER": [1, "power-on"],
@@ -117,17 +113,6 @@ const TABLES = {
     "MAGNETORESISTIVE": 0,
     "QUADRATURE": 1,
     "AS5048A": 2,
-  },
-  drives: {
-    "PWM_DIRECTION": 0,
-    "TWO_INPUTS": 1,
-    "TWO_INPUTS_ENABLE": 2,
-    "SHIFT_REGISTER": 3,
-  },
-  motor_laws: {
-    "LINEAR": 0,
-    "SQRT": 1,
-    "MEASURED": 2,
   },
   settings: [
     ["I", "layout", "1"],
@@ -179,6 +164,9 @@ const TABLES = {
     {"vendor": 4292, "product": 60000, "words": "CP210x (copies of the Uno)"},
     {"vendor": 11914, "product": 10, "words": "Raspberry Pi Pico"},
   ],
+  drives: [
+    "pico",
+  ],
   heartbeat: 0.025,
   patience: 0.03,
   tries: 33,
@@ -189,11 +177,6 @@ const TABLES = {
   lead: "Move the handle slowly to one stop, then to the other, and back, so that the board finds its position",
   piece: 46,
   set_at_once: 8,
-  row_types: {
-    "f32": "<f4",
-    "bool": "<i4",
-    "i32": "<i4",
-  },
   store_bytes: 4096,
   duty_full: 32767,
 }

@@ -46,15 +46,17 @@ class PagePaddle {
         + "from a computer, or this is a different device.",
       )
     }
+    const name = String.fromCharCode(...said.board).replace(/\0+$/, "")
     if (said.table !== TABLES.table) {
       const [major, minor] = TABLES.firmware
+      const which = TABLES.drives.includes(name) ? ` --board ${name}` : ""
       throw new LinkProblem(
         `The firmware ${said.major}.${said.minor} of the board uses a different version of the messages from firmware ${major}.${minor}, `
-        + "which this page needs. On a computer with the hapticlab of this page, run `hapticlab flash`.",
+        + `which this page needs. On a computer with the hapticlab of this page, run \`hapticlab flash${which}\`.`,
         "VERSION",
       )
     }
-    return { ...said, name: String.fromCharCode(...said.board).replace(/\0+$/, "") }
+    return { ...said, name }
   }
 
   // The board's settings by name, or null where it was never given any.

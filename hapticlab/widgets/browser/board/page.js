@@ -95,6 +95,7 @@ class PaddlePage {
     button.disabled = true
     this.say("Choose the port of the board.")
     try {
+      await this.closing // the same port may be chosen again
       const port = await BoardPort.request(this.clock)
       const paddle = new PagePaddle(port, this.clock, (problem) => this.lost(problem))
       this.say("Waiting for the board. Opening a port resets many boards, which takes up to 2 s.")
@@ -124,7 +125,7 @@ class PaddlePage {
     const { paddle } = this
     this.closeView()
     this.forget("Disconnected.")
-    return paddle.close()
+    this.closing = paddle.close()
   }
 
   // The port is gone: the view stays to be read, and shows no motor.
