@@ -89,10 +89,15 @@ def written_before(folder):
     Raises
     ------
     CourseError
-        If it holds anything else that is not hidden.
+        If it holds anything else that is not hidden, or is inside the folder of the labs.
     """
     if folder.exists() and not folder.is_dir():
         raise CourseError(f"{folder} is a file; name a folder for the site")
+    labs = find_labs()[0].path.resolve().parent
+    if folder.resolve().is_relative_to(labs):
+        raise CourseError(
+            f"{folder} is inside {labs}, so that the next build would copy the site into itself; name another folder"
+        )
     try:
         names = json.loads((folder / RECORD).read_text("utf-8"))["files"]
         return {name for name in names if not name.startswith("/") and ".." not in name.split("/")} | {RECORD}

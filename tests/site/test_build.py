@@ -34,6 +34,14 @@ def test_a_folder_that_holds_anything_else_is_refused_before_anything_is_written
     assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", build.RECORD, "notes", "notes.txt", "other"]
 
 
+def test_a_folder_inside_the_labs_is_refused():
+    labs = find_labs()[0].path.parent
+    for folder in (labs / "site", find_labs()[2].path / "new" / "site"):
+        with pytest.raises(CourseError, match="is inside .*, so that the next build would copy the site into itself"):
+            build.written_before(folder)
+    assert build.written_before(labs.parent / "no-such-site") == set()
+
+
 def test_a_folder_with_hidden_files_alone_is_taken_and_no_record_names_files_elsewhere(tmp_path):
     (tmp_path / ".git").mkdir()
     assert build.written_before(tmp_path) == set() == build.written_before(tmp_path / "new")
