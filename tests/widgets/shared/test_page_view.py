@@ -5,9 +5,10 @@ import functools
 import numpy as np
 import pytest
 import sympy as sp
-from page_in_node import NODE, array, in_node
+from page_in_node import NODE, array, evaluated, in_node
 
 import hapticlab as hl
+from hapticlab.widgets import view_recorder
 from hapticlab.widgets.shared.page_data import page_data
 from hapticlab.widgets.stage import Stage
 
@@ -19,6 +20,10 @@ AT_A_WALL = {
     0: [("show", True)],
     5: [("press", "save")],  # nothing is recorded
     10: [("tell", "intend", 0.02)],
+    14: [("press", "record"), ("press", "restart")],  # nothing was recorded yet: the recording waits for the run
+    20: [("tell", "hold", 0)],
+    26: [("press", "restart")],  # the hand holds the handle again
+    28: [("tell", "intend", 0.02)],
     40: [("press", "record"), ("tell", "move", 1, 600.0)],  # k
     60: [("tell", "intend", 0.03)],
     90: [("tell", "move", 1, -5.0)],  # refused
@@ -28,6 +33,8 @@ AT_A_WALL = {
     170: [("press", "stop"), ("press", "slow")],
     180: [("press", "pause")],
     200: [("press", "save"), ("press", "replay")],
+    206: [("show", False)],
+    222: [("show", True)],
     230: [("press", "slow")],
     240: [("press", "replay"), ("press", "resume"), ("press", "slow")],
     260: [("show", False)],
@@ -165,3 +172,52 @@ def test_a_record_is_that_of_a_notebook(name):
     assert set(saved["columns"]) == set(log.columns)
     for name, column in saved["columns"].items():
         assert array(column).tobytes() == np.asarray(getattr(log, name), float).tobytes(), name
+
+
+def in_a_page(name, script):
+    """What a page alone shows, of what a notebook does not have: each answer of its view, news joined with those before."""
+    paddle, scene, _ = SCRIPTS[name]
+    moves = [[k / 60, script.get(k, [])] for k in range(max(script) + 1)]
+    (answer,) = in_node([("view", {"told": page_data(Stage(paddle, scene, clock=lambda: 0.0)), "script": moves})])
+    shown = [{}]
+    for one in answer["seen"]:
+        shown.append({**shown[-1], **one, "time": array(one["bytes"])[1]})
+    return shown[1:]
+
+
+def test_reset_brings_back_the_values_the_speed_and_the_first_state():
+    changed = [("tell", "move", 1, 600.0), ("press", "slow"), ("tell", "hold", 0)]
+    *_, before, after = in_a_page("a wall", {0: [("show", True), ("tell", "intend", 0.02)], 5: changed, 30: [("reset",)]})
+    flags = {name: before["flags"][name] for name in ("speed", "held")}
+    assert before["values"]["k"] == 600.0 and flags == {"speed": 0.1, "held": False}
+    flags = {name: after["flags"][name] for name in ("speed", "held", "running")}
+    assert after["values"]["k"] == 300.0 and flags == {"speed": 1.0, "held": True, "running": True} and after["wanted"] == 0.0
+    assert after["time"] < 0.02 < before["time"]
+
+
+def test_a_tick_at_a_time_ends_with_a_fault():
+    *_, last = in_a_page("a fault", {0: [("show", True), ("tell", "intend", 0.01)], 60: [("step", 1)] * 3})
+    *_, before = in_a_page("a fault", {0: [("show", True), ("tell", "intend", 0.01)], 60: []})
+    assert "Stopped: tick" in last["status"] and last["time"] == before["time"] and not last["flags"]["running"]
+
+
+def test_a_long_recording_ends():
+    lead = """(() => {
+        const stepping = { T: 1e-3, fault: null, advance: ({ length }) => ({ t: new Float64Array(length - 1), F: [] }) }
+        const ended = [], stopRecording = () => ended.push(motion.recorder.samples)
+        const motion = Object.assign(Object.create(Motion.prototype), { stepping, recorder: new Recorder({}), stopRecording,
+            at: 0, speed: 1, clock: () => 0, pace: { spent() {} }, told: { force_max: null } })
+        for (let k = 0; k < 16 && !ended.length; k++) motion.lead(50000, 0)
+        return ended
+    })()"""
+    assert evaluated(["pace.js", "rows.js", "records.js", "motion.js"], lead) == [view_recorder.LONGEST]
+
+
+def test_a_record_without_a_hand_has_no_intent():
+    record = """(() => {
+        const recorder = new Recorder({})
+        recorder.add({ t: Float64Array.of(1, 2), x: Float64Array.of(0, 0), intent: Float64Array.of(NaN, intent ?? NaN) })
+        return Object.keys(recorder.log(1, null).columns)
+    })()"""
+    for intent, names in ((None, ["t", "x"]), (0.01, ["t", "x", "intent"])):
+        assert evaluated(["rows.js", "records.js"], record, intent=intent) == names
