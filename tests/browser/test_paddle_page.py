@@ -132,7 +132,7 @@ class Bench:
             try:
                 return self.until(done, timeout=3000)
             except TimeoutError:
-                if "a script opens no port" not in self.words() and "Start came late" not in self.status():
+                if "a script made it" not in self.words() and "Start came late" not in self.status():
                     break
         raise AssertionError(self.status())
 
@@ -193,7 +193,7 @@ def test_a_wall_is_felt_and_every_way_to_stop_stops_it(bench, tmp_path):
     page, frame = bench.page, bench.frame
     page.evaluate("frame.contentWindow.postMessage({ start: true, connect: true }, '*')")
     page.evaluate("frame.contentDocument.querySelector('#hl-connect').click()")  # a script's press is not a person's
-    bench.until("frame.contentDocument.querySelector('#hl-words').textContent.includes('a script opens no port')")
+    bench.until("frame.contentDocument.querySelector('#hl-words').textContent.includes('a script made it')")
     assert page.evaluate("[serial.asked.length, serial.gotten, port.sent.length]") == [0, 0, 0]
     bench.connect()
     facts = frame.locator("#hl-facts").inner_text()

@@ -20,7 +20,7 @@ function decoded({ chunks }) {
 // One try each; time stands still but for what is waited for.
 async function asked({ message, came }) {
   const timers = []
-  const clock = { now: () => 0, after: (seconds, work) => (timers.push(work), () => timers.splice(timers.indexOf(work), 1)) }
+  const clock = { now: () => 0, wall: () => 0, after: (seconds, work) => (timers.push(work), () => timers.splice(timers.indexOf(work), 1)) }
   const exchange = new link.Exchange({ write: () => {} }, clock, () => {})
   const taken = (known) => (message === "STATUS" ? known.tick : [known.result, known.tick])
   const answer = exchange.ask(message, message === "STATUS" ? [1] : [], { tries: 1 }).then(taken, () => null)

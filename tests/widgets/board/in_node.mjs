@@ -16,10 +16,11 @@ const settle = () => new Promise(setImmediate)
 // A bench of its own for each scenario: clock, board, port, and a page's paddle and source.
 async function bench({ store = asked.stores.usual, scene = "wall" } = {}) {
   const bytes = Uint8Array.from(Buffer.from(store, "hex"))
-  let time = 0
+  let [time, slept] = [0, 0]
   const timers = new Set()
   const clock = {
     now: () => time,
+    wall: () => time + slept,
     after: (seconds, work) => {
       const timer = { at: time + seconds, work }
       timers.add(timer)
@@ -97,6 +98,11 @@ async function bench({ store = asked.stores.usual, scene = "wall" } = {}) {
     await b.press("start", 0.2)
     if (!board.core.duty) throw new Error(`the motor is off: ${b.status()}`)
     return b
+  }
+  // The computer sleeps: its clock stands still, the board's does not.
+  b.sleep = (seconds, ticks = 300) => {
+    slept += seconds
+    for (let k = 0; k < ticks; k++) board.tick()
   }
   // What became of the motor after something was done.
   b.after = async (work, seconds = 0.4, options) => {
@@ -202,6 +208,10 @@ const scenarios = {
   async "page blocked"() {
     const b = await (await bench()).running()
     return b.after(() => {}, 0.4, { asleep: true })
+  },
+  async "laptop asleep"() {
+    const b = await (await bench()).running()
+    return b.after(() => b.sleep(10), 0.8)
   },
   async "nobody looks"() {
     const b = await (await bench()).running()

@@ -20,6 +20,7 @@ STATED = {
     )},
     "press Stop": (0.002, "Motor off"), "page closed": (0.002, None), "another program": (0.002, "Another program connected"),
     "board reset": (0.002, "The board was reset"), "power lost with the cable": (0.002, "disconnected during use"),
+    "laptop asleep": (SILENT, "this page was stopped or too busy, for 10 s"),
     "page blocked": (SILENT, "this page was stopped or too busy"), "nobody looks": (LEASH + SILENT, None),
     "port closed": (SILENT, "did not answer"), "unplugged": (SILENT, "disconnected during use"),
     "device accepts no data": (SILENT, "accepted no data"), "garbage": (SILENT, "did not answer"),

@@ -9,7 +9,7 @@ import pytest
 
 from hapticlab.compiler.boards.board_records import BOARDS
 from hapticlab.compiler.engines.bytecode import layout
-from hapticlab.device.link.messages import LARGEST_PAYLOAD
+from hapticlab.device.link.messages import FAULTS, LARGEST_PAYLOAD, RESULTS
 from hapticlab.widgets.board_page.page import BOARD_SCRIPTS, paddle_page
 from hapticlab.widgets.board_page.programs import choices, labs, page_data
 from hapticlab.widgets.browser_view import BROWSER, SCRIPTS
@@ -45,6 +45,14 @@ def test_nothing_but_a_press_opens_a_port_or_starts_a_motor():
     for word in ways_in:
         assert word not in own, word
     assert own.count("requestPort") == 1
+
+
+def test_no_word_of_a_board_asks_a_page_for_a_call_of_python():
+    instead = re.search(r"const INSTEAD = {(.*?)\n}", script(["board/link.js"]), re.DOTALL)[1]
+    spoken = {name for name, (_, words) in RESULTS.items() if "paddle." in words}
+    assert spoken and spoken <= set(re.findall(r"^  ([A-Z_]+):", instead, re.MULTILINE))
+    assert not any("paddle." in words for _, *sentences in FAULTS.values() for words in sentences)
+    assert [name for name, row in FAULTS.items() if "notebook" in str(row)] == ["HOST_SILENT"]  # the page has words of its own
 
 
 def test_a_press_counts_as_long_as_in_a_notebook():

@@ -147,7 +147,8 @@ class Abandoned extends Error {}
 // Requests and replies over one open port. It has no thread and no worker: where the page stands still so do its heartbeats,
 // and the board switches its motor off.
 class Exchange {
-  // port: write(bytes) and what it heard comes to hear(bytes); clock: now() [s], after(seconds, work) returns what cancels it;
+  // port: write(bytes) and what it heard comes to hear(bytes); clock: now() and wall() [s], of which wall() goes on while the
+  // computer sleeps, after(seconds, work) returns what cancels it;
   // onFrame: takes samples and fault reports
   constructor(port, clock, onFrame) {
     this.port = port
@@ -162,6 +163,7 @@ class Exchange {
     this.turn = Promise.resolve()
     this.era = 0 // grows where all that is under way is given up
     this.lastSent = this.lastLook = clock.now()
+    this.lastWall = clock.wall()
     this.absent = 0 // the longest time for which the page did not run since the last START [s]
     this.look()
   }
@@ -299,9 +301,9 @@ class Exchange {
 
   // Say that the page is there, where that is due.
   beat() {
-    const now = this.clock.now()
-    const pause = now - this.lastLook
-    this.lastLook = now
+    const [now, wall] = [this.clock.now(), this.clock.wall()]
+    const pause = Math.max(now - this.lastLook, wall - this.lastWall)
+    Object.assign(this, { lastLook: now, lastWall: wall })
     if (pause > TABLES.host_silence) this.absent = Math.max(this.absent, pause)
     if (this.broken || now - this.lastSent < TABLES.heartbeat || !this.beating()) return
     const sequence = this.next("STATUS")

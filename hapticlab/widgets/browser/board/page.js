@@ -90,7 +90,7 @@ class PaddlePage {
   // --- the board
 
   async connect() {
-    if (this.clock.now() - pressedAt() > TIMELY) return this.say("Press Connect yourself: a script opens no port.")
+    if (this.clock.now() - pressedAt() > TIMELY) return this.say("That press came late, or a script made it, so no port was opened. Press Connect again.")
     const button = this.element("connect")
     button.disabled = true
     this.say("Choose the port of the board.")

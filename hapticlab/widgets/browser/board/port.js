@@ -114,9 +114,10 @@ class BoardPort {
   }
 }
 
-// The page's time: now() [s], and after(seconds, work), which returns what cancels it.
+// The page's time: now() [s], wall() [s] of the day, which goes on in sleep, and after(seconds, work), which returns what cancels it.
 const PAGE_CLOCK = {
   now: () => performance.now() / 1000,
+  wall: () => Date.now() / 1000,
   after: (seconds, work) => {
     const waiting = setTimeout(work, 1000 * seconds)
     return () => clearTimeout(waiting)
