@@ -343,6 +343,43 @@ const scenarios = {
     await b.press("start")
     return { said: b.said(), status: b.status(), duty: b.board.core.duty }
   },
+  async "a start that takes long"() {
+    const b = await bench()
+    await b.homed().connect()
+    await b.lead(0.02)
+    const upload = b.paddle.upload.bind(b.paddle)
+    b.paddle.upload = async (data) => {
+      const crc = await upload(data)
+      await new Promise((goOn) => b.clock.after(2.1, goOn)) // as a page does that is busy
+      return crc
+    }
+    await b.press("start", 2.5)
+    return { said: b.said(), status: b.status(), duty: Math.max(...b.board.duties.map(Math.abs)) }
+  },
+  async "a period that the board does not have"() {
+    const b = await bench()
+    await b.homed().connect()
+    b.source.told = { ...b.source.told, T: 0.5 }
+    await b.press("start")
+    return { said: b.said(), words: b.status() }
+  },
+  async "a damaged byte, then everything twice"() {
+    const b = await (await bench()).running()
+    const before = b.port.out
+    b.port.readable = new ReadableStream({ start: (out) => void (b.port.out = out) })
+    before.error(new DOMException("A byte was damaged.", "FramingError"))
+    b.port.onWire = (bytes) => Uint8Array.of(...bytes, ...bytes)
+    await b.pass(0.05)
+    const times = []
+    const take = b.paddle.run.samples.bind(b.paddle.run)
+    b.paddle.run.samples = () => {
+      const found = take()
+      times.push(...(found?.t ?? []))
+      return found
+    }
+    await b.pass(0.3)
+    return { times, duty: b.board.core.duty, status: b.status() }
+  },
   async "a board that is silent for a while"() {
     const b = await bench()
     await b.connect()

@@ -92,6 +92,18 @@ def test_what_goes_wrong_in_a_start_ends_with_the_motor_off(found):
     assert "a mistake" in broken["status"]
 
 
+def test_a_start_that_takes_long_does_not_begin_when_nobody_expects_it(found):
+    slow = found["a start that takes long"]
+    assert slow["duty"] == 0 and "COMMIT" in slow["said"] and "START" not in slow["said"]
+    assert "The start took too long. Press Start again." in slow["status"]
+
+
+def test_a_damaged_byte_ends_nothing_and_a_sample_that_comes_twice_is_one(found):
+    became = found["a damaged byte, then everything twice"]
+    assert became["duty"] < 0 and became["status"].startswith("Motor on")
+    assert len(became["times"]) > 200 and np.allclose(np.diff(became["times"]), 1e-3)
+
+
 def test_questions_to_a_board_that_is_silent_do_not_pile_up(found):
     assert found["a board that is silent for a while"]["asked"] <= 3
 
@@ -135,6 +147,7 @@ def test_a_fault_is_told_in_the_packages_words_and_start_begins_again(found):
         ("nothing answers", "No paddle answered within 3 s"),
         ("an encoder that is too fast", "the encoder gives 2e+05 edges per second"),
         ("a sensor that is too slow", "the sensor takes 0.002 s from its last count back to its first"),
+        ("a period that the board does not have", "This scene has T = 0.5 s; the board needs"),
         ("not calibrated", "run `hapticlab calibrate`"), ("not wired", "run `hapticlab calibrate`"),
     ],
 )  # fmt: skip
