@@ -301,6 +301,19 @@ const scenarios = {
     await b.pass(0.3)
     return { ...fault, soon, again: b.board.core.duty, said: b.status() }
   },
+  async "a slider moved in a start"() {
+    const b = await bench()
+    await b.homed().connect()
+    await b.lead(0.02)
+    const slider = b.source.about.parameters.findIndex(({ name }) => name === "k")
+    const take = b.port.take.bind(b.port)
+    b.port.take = (bytes) => {
+      if (b.page.decodeFrame(bytes.slice(0, -1))?.message === "START") b.source.tell("move", slider, 150)
+      return take(bytes)
+    }
+    await b.press("start", 0.5)
+    return { k: b.source.values.k, force: -b.board.core.duty * b.board.known.force_full, x: b.board.x, status: b.status() }
+  },
   async "pressed just after Stop"() {
     const b = await (await bench()).running()
     const starts = () => b.said().filter((name) => name === "START").length

@@ -84,6 +84,12 @@ def test_a_press_just_after_the_motor_went_off_starts_nothing(found):
     assert seen["then"] == 3 and seen["duty"] < 0
 
 
+def test_a_slider_that_is_moved_in_a_start_shows_what_the_board_has(found):
+    felt = found["a slider moved in a start"]
+    assert felt["force"] == pytest.approx(felt["k"] * (felt["x"] - 0.01), abs=0.05) and felt["force"] > 0.5
+    assert "Move the slider again" in felt["status"]
+
+
 def test_what_goes_wrong_in_a_start_ends_with_the_motor_off(found):
     lost = found["stop whose STOP is lost"]
     assert lost["lost"] > 1 and lost["off"] < 0.05  # it is said again

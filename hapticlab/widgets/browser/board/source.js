@@ -66,7 +66,7 @@ class BoardSource {
     if (this.clock.now() - pressed > TIMELY) return this.say(CAME_LATE)
     if (this.busy) return undefined
     if (!this.running && pressed - this.offSince < QUIET) return this.say(JUST_OFF)
-    this.busy = true
+    Object.assign(this, { busy: true, note: "" })
     const { stops } = this
     try {
       this.endReplay()
@@ -90,7 +90,7 @@ class BoardSource {
 
   begin() {
     this.rows = this.freshRows(this.period)
-    Object.assign(this, { running: true, fault: "", note: "", homed: true, noticed: {}, last: { x: this.last.x, F: 0 } })
+    Object.assign(this, { running: true, fault: "", homed: true, noticed: {}, last: { x: this.last.x, F: 0 } })
     if (this.recorder) this.record() // one that waited begins
   }
 
@@ -124,6 +124,7 @@ class BoardSource {
 
   // Move a slider; of moves that come faster than the board obeys, the last one of each counts.
   async move(slider, value) {
+    if (this.busy) return this.say("The scene was just starting. Move the slider again") // its values may have been sent
     const { name } = this.about.parameters[slider]
     const refused = refusal(this.told.parameters, this.values, { [name]: value })
     if (refused) return this.say(refused)
