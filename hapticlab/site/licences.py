@@ -130,7 +130,7 @@ def _text(name, site, files, packages):
     if name in fonts:
         return fonts[name], ()
     if name == "Pyodide and Python":
-        return "\n\n".join(_brought(text) for text in ("mpl-2.0.txt", "python.txt", "mit.txt")), ()
+        return "\n\n".join(_brought(text) for text in ("mpl-2.0.txt", "python.txt", "mit.txt", "c-libraries.txt")), ()
     if name == "JupyterLab and JupyterLite":
         return _joined(_installed("jupyterlite-core"), packages.values())
     if name in EXTENSIONS:

@@ -56,6 +56,23 @@ def test_each_part_has_its_text_in_a_file_that_the_list_links(site):
     assert "JupyterLite Contributors" in both and "Project Jupyter Contributors" in both.partition("@lumino/widgets")[2]
 
 
+def test_pyodides_text_names_the_c_libraries_inside(site):
+    write(site)
+    text = (site / "licences" / "pyodide-and-python.txt").read_text()
+    for words in (
+        "PYTHON SOFTWARE FOUNDATION",
+        "Emscripten",
+        "musl",
+        "libffi",
+        "Expat",
+        "zlib",
+        "libbzip2",
+        "Zstandard",
+        "Stefan Krah",
+    ):
+        assert words in text, words
+
+
 def test_a_file_of_no_known_part_has_none(site):
     for name in ("stray.js", "static/other/code.js", "extensions/strange/main.js", "build.js", "static/pyodide/more.wasm"):
         (site / name).parent.mkdir(parents=True, exist_ok=True)
