@@ -135,17 +135,12 @@ class Node(NDArrayOperatorsMixin):
     shape : tuple of int
     """
 
-    __hash__ = object.__hash__
-
     def __init__(self, graph, number, shape):
         self.graph, self.number, self.shape = graph, number, tuple(map(int, shape))
 
     size = property(lambda self: int(np.prod(self.shape)))
     ndim = property(lambda self: len(self.shape))
     T = property(lambda self: self.graph.moved(np.transpose, self))
-
-    def __repr__(self):
-        return f"Node({self.graph.rows[self.number][0]!r}, shape={self.shape})"
 
     def __array_ufunc__(self, ufunc, method, *inputs, out=None, axis=0, **options):
         name = SAME.get(ufunc.__name__, ufunc.__name__)
@@ -203,6 +198,6 @@ class Node(NDArrayOperatorsMixin):
         return self.graph.outcomes[self.number]
 
     def _needs_its_number(self, *_):
-        raise NotRecorded("float(), int(), a function of math, or a label's text")
+        raise NotRecorded("float(), int(), a function of math, a label's text, or a set or dict")
 
-    __float__ = __int__ = __index__ = __complex__ = __round__ = __str__ = __format__ = _needs_its_number
+    __float__ = __int__ = __index__ = __complex__ = __round__ = __str__ = __repr__ = __format__ = __hash__ = _needs_its_number

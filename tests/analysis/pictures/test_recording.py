@@ -109,6 +109,8 @@ def or_nothing(k):
         (lambda k: [1.0] * int(k["a"]), r"f uses float\(\)"),
         (lambda k: f"{k['a']:.1f}", "f uses .* a label's text"),
         (lambda k: f"{k['a']}", "f uses .* a label's text"),
+        (lambda k: f"{[k['a']]}", "f uses .* a label's text"),
+        (lambda k: 1.0 if k["a"] in {0.0, 1.0} else 2.0, "f uses .* a set or dict with"),
         (lambda k: np.linalg.norm(line(k)), "f uses np.norm with"),
         (lambda k: np.divmod(k["a"], 2), "f uses np.divmod with"),
         (lambda k: np.multiply.outer(line(k), np.arange(2.0)), "f uses np.multiply.outer with"),
