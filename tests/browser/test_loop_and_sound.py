@@ -123,11 +123,11 @@ def test_what_samples_are_missing_from_is_no_loop(page, kind, told):
     assert found["strokes"] == 2 and found["words"][1] == (told or "more given back than taken")
     alone = cut[cut < 50]
     found = page.evaluate(LOOP, [rows(x[alone], F[alone], F[alone] > 0, t[alone]), list(COLUMNS), True])
-    assert found["words"][0] == "No contact yet"
+    assert found["words"][0] == "No whole contact yet"
     sine = np.sin(2 * np.pi * np.arange(1000) / 600)
     cut = np.r_[0:650, 660:1000]  # each half has one rise through the mean
     found = page.evaluate(LOOP, [rows(sine[cut], sine[cut], np.full(len(cut), np.nan), cut * T), list(COLUMNS), False])
-    assert found["words"][0] == "No cycle yet"
+    assert found["words"][0] == "No whole cycle yet"
 
 
 def test_a_loop_says_what_it_is_where_that_is_less_than_it_seems(page):
@@ -162,7 +162,7 @@ def test_no_loop_is_told_before_there_is_one(page):
         })""",
         list(COLUMNS),
     )
-    assert said == ["No contact yet", "No cycle yet"]
+    assert said == ["No whole contact yet", "No whole cycle yet"]
 
 
 # Feeds a voice as a view does, a frame at a time, and renders what a loudspeaker would play.
