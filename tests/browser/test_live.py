@@ -20,7 +20,7 @@ GREY = """() => {
 }"""
 STAGE, STATUS = "canvas.hl-stage", ".hl-status"
 # Where the handle is, F, and E as the view says them in words.
-NUMBERS = "() => document.querySelector('.hl-readout').textContent.match(/-?[0-9.]+/g).map(Number)"
+NUMBERS = "() => (document.querySelector('.hl-readout').textContent.match(/-?[0-9.]+/g) ?? []).map(Number)"
 # Contrast of two colours after WCAG 2.
 CONTRAST = """() => {
   const light = ([r, g, b]) => {

@@ -7,10 +7,11 @@ from hapticlab.library.sketch import Sketch
 
 PADDLE = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 STAGE, STATUS = "canvas.hl-stage", ".hl-status"
-NUMBERS = "() => document.querySelector('.hl-readout').textContent.match(/-?[0-9.]+/g).map(Number)"
+# None before the first readout.
+NUMBERS = "() => (document.querySelector('.hl-readout').textContent.match(/-?[0-9.]+/g) ?? []).map(Number)"
 # Whether position and force are as they were when this was asked before.
 STANDS = f"() => {{ const now = ({NUMBERS})().slice(0, 2).join(), was = window.was; window.was = now; return now === was }}"
-TIME = "() => Number(document.querySelector('.hl-time').textContent.match(/[0-9.]+/)[0])"
+TIME = "() => Number(document.querySelector('.hl-time').textContent.match(/[0-9.]+/)?.[0])"
 INJECTED = "() => document.head.append(Object.assign(document.createElement('script'), { textContent: 'window.stolen = 3' }))"
 HOSTILE = "</script><img src=x onerror='window.stolen = 1'><script>window.stolen = 2</script>"
 
