@@ -93,6 +93,7 @@ def _put(made, path):
 
 
 def cache_folder():
+    """Return the folder in which this system keeps what can be made again; it need not be there yet."""
     if os.name == "nt":
         base = os.environ.get("LOCALAPPDATA") or Path.home() / "AppData/Local"
     elif sys.platform == "darwin":

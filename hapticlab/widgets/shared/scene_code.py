@@ -133,7 +133,7 @@ def _number(value):
 def _model(model):
     """A model of energies without contacts, as the call that makes it."""
     if not isinstance(model, Mechanics) or model.lagrangian is None or model.contacts:
-        raise NotImplementedError
+        raise NotImplementedError("a model with contacts, or without energies, is not written out")
     given = {
         "dissipation": _text(model.dissipation),
         "forces": "{" + ", ".join(f"{_text(q)}: {_text(Q)}" for q, Q in model.forces) + "}",
@@ -157,7 +157,7 @@ class _Printer(StrPrinter):
         name = type(expr).__name__
         if is_named(expr):
             if type(expr).role not in ("coordinate", "signal", "handle"):
-                raise NotImplementedError(name)
+                raise NotImplementedError(f"{name} comes from a call that an expression does not hold")
             return name if type(expr).role == "coordinate" else f"{name}({self._print(expr.args[0])})"
         return f"sp.{name}({self.stringify(expr.args, ', ')})"
 
@@ -197,4 +197,4 @@ class _Printer(StrPrinter):
     _print_Pi = _print_Exp1 = _print_NumberSymbol
 
     def emptyPrinter(self, expr):
-        raise NotImplementedError(type(expr).__name__)
+        raise NotImplementedError(f"{type(expr).__name__} has no words here; SymPy's own would not run as Python")

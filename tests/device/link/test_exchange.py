@@ -5,6 +5,7 @@ import struct
 from binascii import crc_hqx
 
 import pytest
+from scripted_port import ScriptedPort
 
 import hapticlab as hl
 from hapticlab.device.link.exchange import HEARTBEAT, PATIENCE, TRIES, Exchange
@@ -14,27 +15,12 @@ from hapticlab.device.link.wire import decode, encode, stuff
 from hapticlab.errors import LinkError, PortError
 
 
-class Script:
+class Script(ScriptedPort):
     """A port in virtual time whose far end is a function: frame said -> bytes that come back."""
 
-    lockstep, port, is_open = True, "script://", True
-
     def __init__(self, answer):
-        self.answer, self.time, self.heard, self.said, self.when = answer, 0.0, b"", [], []
-        self.timeout = 0.01
-
-    def now(self):
-        return self.time
-
-    @property
-    def in_waiting(self):
-        return len(self.heard)
-
-    def read(self, size):
-        if not self.heard:
-            self.time += self.timeout
-        data, self.heard = self.heard[:size], self.heard[size:]
-        return data
+        super().__init__()
+        self.answer, self.said, self.when = answer, [], []
 
     def write(self, data):
         frame = decode(data[:-1])

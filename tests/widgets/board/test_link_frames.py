@@ -5,6 +5,7 @@ import subprocess
 
 import core_in_node
 import pytest
+from scripted_port import ScriptedPort
 from write_link_frames import FILE, Decoder, decode, decoded, encode, text
 
 from hapticlab.device.board import message_scripts
@@ -16,25 +17,12 @@ FRAMES = json.loads(FILE.read_text("utf-8"))
 STREAMS = FRAMES["streams"]
 
 
-class Port:
+class Port(ScriptedPort):
     """A port in virtual time that says this after the first thing it is told."""
 
-    lockstep, port, is_open, timeout = True, "script://", True, 0.01
-
     def __init__(self, said):
-        self.said, self.heard, self.time = said, b"", 0.0
-
-    def now(self):
-        return self.time
-
-    @property
-    def in_waiting(self):
-        return len(self.heard)
-
-    def read(self, size):
-        self.time += 0 if self.heard else self.timeout
-        data, self.heard = self.heard[:size], self.heard[size:]
-        return data
+        super().__init__()
+        self.said = said
 
     def write(self, data):
         self.heard, self.said = self.said, b""
