@@ -107,6 +107,13 @@ class Hand:
             self.page.wait_for_timeout(300 + 7 * (k % 11))
 
 
+def gaps_of(found):
+    """Return the times between two pictures while the pointer moved [ms]."""
+    begin, end = found["moves"][0][0], found["moves"][-1][0]
+    during = [when for when, _ in found["shown"] if begin < when < end]
+    return [after - before for before, after in zip(during, during[1:], strict=False)]
+
+
 def paint_times(moves, shown):
     """Return from each jump of the pointer to the first picture in which the hand has left its place [ms]."""
     taken = []
@@ -135,9 +142,7 @@ def measure(lab, first, seconds):
     hand.jump(JUMPS)
     jumped = page.evaluate("window.found")
     page.close()
-    begin, end = dragged["moves"][0][0], dragged["moves"][-1][0]
-    during = [when for when, _ in dragged["shown"] if begin < when < end]
-    gaps = [after - before for before, after in zip(during, during[1:], strict=False)]
+    gaps = gaps_of(dragged)
     paints = paint_times(jumped["moves"], jumped["shown"])
     return {
         "frames/s": 1000 * len(gaps) / sum(gaps), "gap p95 ms": quantile(gaps, 0.95), "paint p50 ms": quantile(paints, 0.5),

@@ -24,7 +24,7 @@ from core_in_node import WEB, run_of  # noqa: E402
 from core_in_node import in_node as core_in_node  # noqa: E402
 from in_node import case, in_node  # noqa: E402
 from lab import browsing  # noqa: E402
-from live_view import HAND, JUMPS, MOVES, paint_times, quantile  # noqa: E402
+from live_view import HAND, JUMPS, MOVES, gaps_of, paint_times, quantile  # noqa: E402
 from owner_pages import write_block  # noqa: E402
 
 import hapticlab as hl  # noqa: E402
@@ -142,9 +142,7 @@ def dragged(browser, path, seconds):
     hand.jump(JUMPS)
     jumped = page.evaluate("window.found")
     page.close()
-    begin, end = found["moves"][0][0], found["moves"][-1][0]
-    during = [when for when, _ in found["shown"] if begin < when < end]
-    gaps = [after - before for before, after in zip(during, during[1:], strict=False)]
+    gaps = gaps_of(found)
     paints = paint_times(jumped["moves"], jumped["shown"])
     assert len(paints) > JUMPS / 2, "the hand was seen to move"
     times = quantile(gaps, 0.95), work, quantile(paints, 0.5), quantile(paints, 0.95)
