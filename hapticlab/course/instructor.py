@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Marked:
-    """What a notebook earned, and what its cells raised."""
+    """What a notebook earned, what its cells raised and printed, and the names that it holds at its end."""
 
     marks: tuple[Mark, ...]
     problems: list[Problem]
+    names: dict[str, Any]
+    printed: str
 
     @property
     def earned(self) -> float:
@@ -74,6 +76,6 @@ def mark_notebook(folder: LabFolder, notebook: dict[str, Any], answers: Path, se
     """
     with tempfile.TemporaryDirectory() as scratch:
         place = shutil.copytree(folder.path, Path(scratch) / folder.name)
-        names, problems = run(code_of(notebook), place)
+        names, problems, printed = run(code_of(notebook), place)
     lab = folder.lab()
-    return Marked(marks(lab, names, hidden_cases(lab, answers, seed)), problems)
+    return Marked(marks(lab, names, hidden_cases(lab, answers, seed)), problems, names, printed)

@@ -80,15 +80,17 @@ def run(sources, folder):
     names : dict
         What the notebook holds at its end.
     problems : list of Problem
+    printed : str
+        By all cells together, cards as text.
     """
-    names, problems = {"__name__": "__main__"}, []
-    with chdir(folder), redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+    names, problems, printed = {"__name__": "__main__"}, [], io.StringIO()
+    with chdir(folder), redirect_stdout(printed), redirect_stderr(io.StringIO()):
         for number, source in enumerate(sources, start=1):
             try:
                 exec(compile(source, f"cell {number}", "exec"), names)
             except (Exception, SystemExit) as problem:
                 problems.append(Problem(number, f"{type(problem).__name__}: {problem}"))
-    return names, problems
+    return names, problems, printed.getvalue()
 
 
 def solved(notebook, solution, exercises):

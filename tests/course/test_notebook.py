@@ -115,10 +115,13 @@ def test_what_the_student_must_not_change_is_not_replaced():
 
 
 def test_a_cell_that_fails_stops_none_after_it(tmp_path):
-    names, problems = run(["a = 1", "1 / 0", "print('unseen'); b = a + 1", "def", "raise SystemExit", "c = __name__"], tmp_path)
+    names, problems, printed = run(
+        ["a = 1", "1 / 0", "print('kept'); b = a + 1", "def", "raise SystemExit", "c = __name__"], tmp_path
+    )
     assert (names["a"], names["b"], names["c"]) == (1, 2, "__main__")
     raised = [(p.cell, p.words.split(":")[0]) for p in problems]
     assert raised == [(2, "ZeroDivisionError"), (4, "SyntaxError"), (5, "SystemExit")]
+    assert printed == "kept\n"
 
 
 def test_marks_need_the_hidden_cases_too(folder):
