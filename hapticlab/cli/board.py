@@ -11,6 +11,7 @@ from pathlib import Path
 
 from .. import __version__
 from ..base.in_notebook import is_in_browser
+from ..base.profile.profile_file import SUFFIX
 from ..course.drawings.wiring_files import wiring_svg
 from ..device.bring_up.about import restorable, settings_of
 from ..device.bring_up.bench import bench as first_power_up
@@ -29,6 +30,7 @@ from ..device.setup.stored_settings import offer
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError, PortError
 from .exits import INTERRUPTED
+from .scene_file import held_alike
 
 #: a simulated board has no motor that could hurt and no handle that a person could lead
 SIMULATED = "sim://"
@@ -151,12 +153,16 @@ def _tell_notices(paddle):
 def run_on_board(file, options, **compiling):
     """Run a scene file on the board at options.port; return program, Telemetry and timing.
 
-    The file's paddle is the mechanics of a simulated board; on another it is not used.
+    The file's paddle is the mechanics of a simulated board, unless the port names the file of a profile, whose paddle is held
+    by the same hand; on another board it is not used.
     """
     with _words_apart(options):
         moves = f"The motor of {options.port} will move the handle for {file.duration:g} s; hold it lightly."
         _agree(options, Person(), moves)
         mechanics = file.paddle if _is_simulated(options.port) and isinstance(file.paddle, SimulatedPaddle) else None
+        at = options.port.partition("?")[0].removeprefix(SIMULATED)
+        if mechanics is not None and at.endswith(SUFFIX):
+            mechanics = held_alike(mechanics, at, T=mechanics.T)
         with connect(options.port, T=file.paddle.T, paddle=mechanics) as paddle:
             _tell_notices(paddle)
             if mechanics is None:

@@ -40,6 +40,8 @@ def parser():
     _add_grade(commands)
     for one in (_add_run(commands, shared), _add_tradeoff(commands, shared), _add_share(commands, shared)):
         one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
+        words = "use the paddle of a profile, by name or file, such as bench7.json, in the hand of the scene file's paddle"
+        one.add_argument("--paddle", metavar="PROFILE", help=words)
     _add_board_commands(commands, shared)
     _add_site(commands)
     _add_guide(commands)
@@ -69,7 +71,7 @@ def _add_run(commands, shared):
     text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
     made = _add_command(commands, "cli.scenes.run", text, [shared])
     made.add_argument("file", metavar="FILE.py")
-    words = "run on the board at this port; a sim:// port simulates the paddle that the file defines"
+    words = "run on the board at this port; sim://hapkit simulates the paddle that FILE.py defines, sim://FILE.json that profile"
     made.add_argument("--port", metavar="URL", help=words)
     made.add_argument("--yes", action="store_true", help="do not ask before the motor moves")
     made.add_argument("--every", type=_ticks, metavar="N", help="have the board send one sample in N ticks")

@@ -70,6 +70,11 @@ def load_scene(path):
     return SceneFile(scene, paddle, duration)
 
 
+def held_alike(paddle, profile, **changes):
+    """Return the simulated paddle of a profile, or of its name or file, in the hand that holds another paddle."""
+    return SimulatedPaddle.from_profile(profile, hand=getattr(paddle, "hand", None), **changes)
+
+
 def _run_as_script(path):
     """Return the names a Python file defines; its folder comes first where it imports, as for any script."""
     if b"\0" in Path(path).read_bytes():

@@ -18,7 +18,7 @@ from ..slips.shown import one_breath, whole
 from . import board
 from . import demo as demonstration
 from .exits import INTERRUPTED, complain
-from .scene_file import describe, load_scene, report_of, run_scene
+from .scene_file import describe, held_alike, load_scene, report_of, run_scene
 
 _METHODS = (*sorted(METHODS), Taylor.name, EXACT)
 
@@ -121,7 +121,8 @@ def tell(options, facts, files, text):
 
 def _changed(file, options):
     """Return the scene file with what the command line sets."""
-    paddle = file.paddle if options.T is None else replace(file.paddle, T=options.T)
+    paddle = held_alike(file.paddle, options.paddle) if options.paddle else file.paddle
+    paddle = paddle if options.T is None else replace(paddle, T=options.T)
     duration = file.duration if options.duration is None else options.duration
     paddle.ticks(duration)
     return replace(file, scene=file.scene(**dict(options.set or [])), paddle=paddle, duration=duration)

@@ -56,6 +56,7 @@ def _may_be_copied(path, options):
 def _code(text, options):
     """Return the text of a scene file, with the values and options of the command line."""
     more = [f"scene = scene({values_code(dict(options.set))})"] if options.set else []
-    given = [f"--{name} {value}" for name in ("T", "method") if (value := getattr(options, name))]
+    named = {"T": options.T, "method": options.method, "paddle": options.paddle and Path(options.paddle).name}
+    given = [f"--{name} {value}" for name, value in named.items() if value]
     more += [f"# shared with {' '.join(given)}"] if given else []
     return "\n".join([text.rstrip(), *more]) + "\n"

@@ -156,7 +156,7 @@ def total_delay(device):
     return delay + lag if lag else delay
 
 
-_CURE = "a paddle, as hl.SimulatedPaddle(...), or hl.Device(m=..., b=..., T=...)"
+_CURE = "a paddle, as hl.SimulatedPaddle(...), a profile, as hl.devices.profile('bench7.json'), or hl.Device(m=..., b=..., T=...)"
 _DEFAULTS = {f.name: f.default for f in fields(Device)}
 _OPTIONAL = {"delay", "sensor_delay", "coulomb", "counts_per_metre", "hand", "velocity"}
 

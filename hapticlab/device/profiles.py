@@ -113,7 +113,7 @@ _KNOWN = (
 )
 
 
-def profile(name: File) -> PaddleProfile:
+def profile(name: File | PaddleProfile) -> PaddleProfile:
     """Return the profile of a kind of paddle by its name, or of one paddle from the file that its profile was saved to.
 
     Each kind also exists ``_rough``, with typical friction and delays, ``_coarse``, with an encoder of 100 um per count,
@@ -122,7 +122,7 @@ def profile(name: File) -> PaddleProfile:
     Parameters
     ----------
     name : {"hapkit", "hapkit_as5048a", "longhorn", "motor_shield", "eth"} or path
-        A kind, such as "hapkit" or "hapkit_rough", or a file that ends in ".json".
+        A kind, such as "hapkit" or "hapkit_rough", or a file that ends in ".json". A profile is returned as it is.
 
     Raises
     ------
@@ -137,16 +137,30 @@ def profile(name: File) -> PaddleProfile:
     >>> print(profile("hapkit_rough")["coulomb"])
     coulomb = 0.05 N, between 0.02 and 0.08
     """
+    if isinstance(name, PaddleProfile):
+        return name
     if not isinstance(name, str | PathLike):
         raise PaddleError(f"a profile is given by its name or its file, not as {what_is(name)}; {_KNOWN}")
     if not isinstance(name, str) or name.endswith(SUFFIX):
         return _from_file(name)
+    found = kind_named(name)
+    if found is None:
+        raise PaddleError(f"no profile {name!r}; {_KNOWN}")
+    return found
+
+
+def kind_named(name: str) -> PaddleProfile | None:
+    """Return the profile of a kind of paddle or of its variant, or None for any other name; no file is read.
+
+    Examples
+    --------
+    >>> kind_named("hapkit_slow").T, kind_named("bench 7")
+    (0.002, None)
+    """
     kind, _, variant = name.rpartition("_")
-    if name in PROFILES:
-        return PROFILES[name]
     if kind in PROFILES and variant in VARIANTS:
         return VARIANTS[variant](PROFILES[kind])
-    raise PaddleError(f"no profile {name!r}; {_KNOWN}")
+    return PROFILES.get(name)
 
 
 def _from_file(path):

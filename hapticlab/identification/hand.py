@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..base.profile.paddle_profile import PaddleProfile
 from ..base.telemetry import Telemetry, check_record
 from ..device.board.serial_paddle import SerialPaddle
-from ..device.device import total_delay
 from ..device.hand.hand import Hand
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from .fit_result import Found, told
 from .hand_motion import hand_positions
+from .known_handle import KnownHandle, widened
 from .paddle import counts_per_metre_of
 from .pushes import FORCE, push_hand
 from .scoring import fit
 from .start import heading
+
+if TYPE_CHECKING:
+    from ..base.annotations import File
+    from ..base.profile.paddle_profile import PaddleProfile
 
 #: s that a hand is taken not to react; a stretch reflex begins after 25 to 50 ms, the will after 100 and more
 WINDOW = 0.06
@@ -58,7 +61,7 @@ class HandFit(Found):
 
 def identify_hand(
     source: Telemetry | SimulatedPaddle | SerialPaddle,
-    device: PaddleProfile | SimulatedPaddle | SerialPaddle | None = None,
+    device: PaddleProfile | SimulatedPaddle | SerialPaddle | File | None = None,
     *,
     window: float = WINDOW,
     force: float = FORCE,
@@ -77,10 +80,10 @@ def identify_hand(
     source : Telemetry or Paddle
         A record with ``F`` zero but for pushes; or a paddle, which then pushes the hand that holds it, at random times:
         on a board weaker first, until the handle is seen to come back (:func:`push_hand`).
-    device : PaddleProfile, SimulatedPaddle or None
-        m, b, coulomb, delay of the handle alone, the delay of a profile's being that of the record; None takes the
-        paddle's own. A free handle tells them to
-        :func:`identify_paddle`.
+    device : PaddleProfile, paddle, or a name or file of hl.devices.profile, optional
+        What is known of the handle alone: m, b, coulomb and the delay from sensor to force. :func:`identify_paddle`
+        finds them from a free handle. If the delay of a profile was not identified, the record says how long the
+        computation took. By default the paddle itself.
     window : float
         How long after the begin of a push the hand is taken not to react [s].
     force : float
@@ -90,10 +93,17 @@ def identify_hand(
     counts_per_metre : float, optional
         Of the encoder [1/m]; a paddle knows its own.
     confidence : float
+        Of the intervals. They contain those of the handle's constants, as far as the estimate depends on these, and take
+        the intervals of a profile as those of the same confidence.
 
     Returns
     -------
     HandFit
+
+    Raises
+    ------
+    AnalysisError
+        If the record has no push, or the mass of the handle is not known.
 
     Examples
     --------
@@ -108,24 +118,23 @@ def identify_hand(
         counts_per_metre = counts_per_metre_of(source) if counts_per_metre is None else counts_per_metre
         source = push_hand(source, force=force, pushes=pushes, seed=seed)
     check_record(source, "hl.identify.hand")
-    device = getattr(device, "settings", device)
-    if device is None or isinstance(device, Telemetry):
-        raise AnalysisError(
-            "hl.identify.hand: the paddle is not known. Give device=, a PaddleProfile or found.profile() of hl.identify.paddle"
-        )
-    own = {name: float(getattr(device, name, 0.0)) for name in ("m", "b", "coulomb")}
-    own["delay"] = float(total_delay(source if isinstance(device, PaddleProfile) or not hasattr(device, "delay") else device))
-    windows = _windows(source, window)
+    handle, windows = KnownHandle.of(device, source), _windows(source, window)
     quantum = 0.0 if counts_per_metre is None else 1 / abs(counts_per_metre)
     y = np.concatenate([source.x[a:b] for a, b in windows])
-    start, scales = _start(source, windows, own)
+    start, scales = _start(source, windows, handle)
     low = np.where(np.arange(len(start)) < len(SOUGHT), 0.0, -np.inf)
-    starts = [np.stack([start, *_guesses(start, source.x, windows, own)], axis=1)[:, :, None], start[:, None, None]]
-    fitted = fit(_motion(source, windows, own), y[:, None], starts, lambda p: scales[:, None], quantum=quantum, low=low)
+    starts = [np.stack([start, *_guesses(start, source.x, windows)], axis=1)[:, :, None], start[:, None, None]]
+    held = round(BEFORE / source.T) if handle.coulomb else 0
+
+    def motion(handle):
+        return _motion(source, windows, handle, held)
+
+    fitted = fit(motion(handle), y[:, None], starts, lambda p: scales[:, None], quantum=quantum, low=low)
+    fitted = widened(fitted, y[:, None], motion, scales[:, None], handle, confidence)
     return told(HandFit, y, fitted, SOUGHT, quantum=quantum, T=source.T, confidence=confidence)
 
 
-def _guesses(start, x, windows, own):
+def _guesses(start, x, windows):
     """Yield starts with parts of its m and b, other k, and the hand at rest where the handle was pushed, or about the middle."""
     each = (len(start) - len(SOUGHT)) // len(windows)
     for middle in (None, np.median(x)):
@@ -154,16 +163,15 @@ def _windows(log, window):
     return found
 
 
-def _motion(log, windows, own):
+def _motion(log, windows, handle, held):
     """The model: m, b, k of the hand, then the resting place, x and v at the begin of each window.
 
-    A handle with friction is held by it before a push, wherever within the friction's reach the hand would rest: it
-    stays at x until the push, and has no v.
+    A handle with friction is held by it before a push, for so many samples, wherever within the friction's reach the hand
+    would rest: it stays at x until the push, and has no v.
     """
-    held = round(BEFORE / log.T) if own["coulomb"] else 0
 
     def motion(p):
-        body = {"m": own["m"] + p[0], "b": own["b"] + p[1], "k": p[2], "coulomb": own["coulomb"], "delay": own["delay"]}
+        body = {"m": handle.m + p[0], "b": handle.b + p[1], "k": p[2], "coulomb": handle.coulomb, "delay": handle.delay}
         begun, found = iter(p[3:]), []
         for a, z in windows:
             rest, x0 = next(begun), next(begun)
@@ -175,13 +183,13 @@ def _motion(log, windows, own):
     return motion
 
 
-def _start(log, windows, own):
+def _start(log, windows, handle):
     """First values and scales: the equation of motion integrated twice, least squares in every window."""
     T, told = log.T, []
-    lag = round(own["delay"] / T)
+    lag = round(handle.delay / T)
     for a, z in windows:
         y, t = log.x[a:z] - log.x[a], np.arange(z - a) * T
-        felt = np.concatenate([np.zeros(lag), log.F[a : z - lag]]) + own["coulomb"] * heading(y, 0.0)
+        felt = np.concatenate([np.zeros(lag), log.F[a : z - lag]]) + handle.coulomb * heading(y, 0.0)
         once = [np.cumsum(values) * T for values in (y, felt)]
         columns = [np.ones_like(t), t, t**2, -once[0], -np.cumsum(once[0]) * T, -np.cumsum(once[1]) * T]
         A = np.column_stack(columns)
@@ -189,10 +197,10 @@ def _start(log, windows, own):
         told.append((np.linalg.lstsq(A / size, y, rcond=1e-9)[0] / size)[3:])
     damping, stiffness, mobility = np.median(told, axis=0)
     m = 1 / max(mobility, 1e-3)
-    hand = np.array([m - own["m"], damping * m - own["b"], stiffness * m])
-    hand = np.maximum(hand, [0.01 * own["m"], 0.0, 1.0])
+    hand = np.array([m - handle.m, damping * m - handle.b, stiffness * m])
+    hand = np.maximum(hand, [0.01 * handle.m, 0.0, 1.0])
     moved = np.ptp(log.x)
-    count = 2 if own["coulomb"] else 3
+    count = 2 if handle.coulomb else 3
     begun = [value for a, _ in windows for value in (log.x[a], log.x[a], 0.0)[:count]]
     scales = (moved, moved, moved / WINDOW)[:count] * len(windows)
     return np.array([*hand, *begun]), np.array([0.1 * m, 1.0, 100.0, *scales])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..base.arguments import number
+from ..base.arguments import having, number
 from ..base.profile.estimate import Estimate
 from ..device.board.serial_paddle import SerialPaddle
 from ..errors import AnalysisError, PaddleError
@@ -118,6 +118,7 @@ def identify_paddle(
         raise AnalysisError(
             "beside= without added=: records with and without a known mass determine the force constant. Give added="
         )
+    having(paddle, "a paddle, as hl.SimulatedPaddle.from_profile(...) or hl.connect()", "run", error=PaddleError)
     force, travel = _limits(paddle, force, travel)
     added = number("added", added, "kg", "an identification", least=0, error=PaddleError)
     pilot, size = _pilot(paddle, force, travel)

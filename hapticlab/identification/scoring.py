@@ -198,7 +198,7 @@ def _scored(motion, y, start, scales, sigma, quantum, weights, counted, low):
     """Climb to the likelihood's top with sigma given; return parameters and residuals."""
     near = low[:, None] + STEP * scales  # at its bound: differences reach beyond it
     at, damping = np.maximum(start, low[:, None]), np.full(y.shape[1], DAMPING)
-    rest, slopes = _linearised(motion, y, at, scales)
+    rest, slopes = linearised(motion, y, at, scales)
     best = _likelihood(rest, sigma, quantum, weights, counted)
     for _ in range(STEPS):
         score, info = information(rest, sigma, quantum, counted)
@@ -210,7 +210,7 @@ def _scored(motion, y, start, scales, sigma, quantum, weights, counted, low):
         braced = fisher + damping[:, None, None] * np.eye(len(at)) * diagonal[:, None]
         step = _solved(braced, gradient[..., None])[..., 0]
         nxt = np.maximum(at + (step * scales.T).T, low[:, None])
-        rest_next, slopes_next = _linearised(motion, y, nxt, scales)
+        rest_next, slopes_next = linearised(motion, y, nxt, scales)
         now = _likelihood(rest_next, sigma, quantum, weights, counted)
         better = (now >= best) & np.all(np.isfinite(slopes_next), axis=(0, 1))
         done = np.einsum("lp,lp->l", step, gradient) < ENOUGH**2
@@ -222,7 +222,7 @@ def _scored(motion, y, start, scales, sigma, quantum, weights, counted, low):
     return at, rest
 
 
-def _linearised(motion, y, at, scales):
+def linearised(motion, y, at, scales):
     """Residuals, shape (N, L), and slopes of the motion by its parameters over their scales, (N, P, L)."""
     count = len(at)
     offsets = np.concatenate([np.zeros((1, count)), np.eye(count), -np.eye(count)]) * STEP
@@ -245,7 +245,7 @@ def _solved(matrix, right):
 
 
 def _finished(motion, y, found, scales, sigma, quantum, weights, freedom, counted, low):
-    rest, slopes = _linearised(motion, y, found, scales)
+    rest, slopes = linearised(motion, y, found, scales)
     score, info = information(rest, sigma, quantum, counted)
     fisher = np.einsum("npl,nl,nql->lpq", slopes, weights * info, slopes)
     covariance = _solved(fisher, np.broadcast_to(np.eye(len(found)), fisher.shape))

@@ -130,8 +130,8 @@ def _standing(profile):
 
 
 def _base(given):
-    if given is None or isinstance(given, PaddleProfile):
-        return given
+    if given is None:
+        return None
     if not hasattr(given, "run"):
         return named_profile(given)
     settings = getattr(given, "settings", None)

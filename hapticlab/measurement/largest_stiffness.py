@@ -177,7 +177,7 @@ def largest_stiffness(
     True
     """
     B, place = number("B", B, "N s/m"), number("place", place, "m")
-    having(paddle, "a paddle, as hl.SimulatedPaddle(...) or hl.connect()", "program", error=PaddleError)
+    having(paddle, "a paddle, as hl.SimulatedPaddle.from_profile(...) or hl.connect()", "program", error=PaddleError)
     instance("starts", starts, Starts, "hl.measure.Starts(run_ups=...)")
     instance("search", search, Search, "hl.measure.Search(first=...)")
     instance("judged", judged, Judgement, "hl.measure.Judgement(longest=...)")

@@ -19,7 +19,10 @@ def source_of(paddle, scene, **options):
     for kind, source in kinds.items():
         if isinstance(paddle, kind):
             return source(paddle, scene, **options)
-    raise PaddleError(f"paddle = {paddle!r}; a live view needs a SimulatedPaddle, or a board: hl.connect()")
+    raise PaddleError(
+        f"paddle = {paddle!r}; a live view needs a SimulatedPaddle, or a board: hl.connect(). "
+        "hl.SimulatedPaddle.from_profile(...) makes one of a profile or its file"
+    )
 
 
 def overview_words(source, scene, along):

@@ -434,6 +434,28 @@ def test_the_files_own_paddle_is_what_a_simulated_board_moves(tmp_path, capsys):
     assert "one sample in 5" in facts["left_open"]["energy"]
 
 
+def test_the_paddle_of_a_profiles_file_in_the_hand_of_the_scene_file(tmp_path, capsys):
+    """Held by a spring of 50 N/m at rest 20 mm inside a wall of 50 N/m, any paddle rests at 10 mm, a heavy one as well."""
+    heavy = hl.devices.PaddleProfile("bench 7", m=0.2, b=2.0, T=2e-3).save(tmp_path / "bench7.json")
+    (tmp_path / "held.py").write_text(
+        "import hapticlab as hl\nscene = hl.wall()(k=50, x_o=0)\nduration = 2.0\n"
+        "paddle = hl.SimulatedPaddle(m=0.05, b=2.0, T=1e-3, hand=hl.Hand(m=0.1, b=3, k=50, intent=0.02))\n"
+    )
+    there = ["--out", str(tmp_path), "--json"]
+    for given, period in (["--paddle", heavy], 2e-3), (["--port", f"sim://{heavy}"], 1e-3):
+        assert main.main(["run", str(tmp_path / "held.py"), *map(str, given), *there]) == 0
+        facts = json.loads(capsys.readouterr().out)
+        assert facts["program"]["T_s"] == period and facts["chatter"]["rest_m"] == pytest.approx(0.01, rel=1e-3)
+        assert "m = 0.2 kg" in facts["paddle"] or facts["paddle"].startswith("host")
+    assert (
+        main.main(["share", str(tmp_path / "held.py"), "--paddle", str(heavy), "--out", str(tmp_path / "a.html"), "--code"]) == 0
+    )
+    assert "# shared with --paddle bench7.json" in (tmp_path / "a.html").read_text("utf-8")
+    with pytest.raises(SystemExit):
+        main.main(["run", str(tmp_path / "held.py"), "--paddle", "falcon"])
+    assert "no profile 'falcon'; there are hapkit" in capsys.readouterr().err
+
+
 def test_on_another_board_the_files_paddle_is_not_used_and_that_is_said(tmp_path, monkeypatch, capsys):
     simulated = board_command.connect
     monkeypatch.setattr(board_command, "connect", lambda port, T, paddle: simulated("sim://hapkit", T=T, paddle=paddle))

@@ -10,6 +10,7 @@ from hapticlab.compiler.boards.cost import cost
 from hapticlab.errors import AnalysisError
 from hapticlab.identification.hand import _motion, _start, _windows
 from hapticlab.identification.identifying_forces import Excitation
+from hapticlab.identification.known_handle import KnownHandle
 from hapticlab.identification.paddle import after
 from hapticlab.identification.scoring import fit
 
@@ -45,11 +46,11 @@ def test_friction_of_the_device_is_no_part_of_the_hand():
 def test_intervals_cover_the_hand():
     """Noise drawn anew over one true motion: 120 records fitted together."""
     log = hl.identify.pushes(replace(PADDLE, noise=0.0), pushes=2)
-    windows, own = _windows(log, 0.06), {"m": 0.03, "b": 0.1, "coulomb": 0.0, "delay": 0.4e-3}
+    windows, handle = _windows(log, 0.06), KnownHandle(0.03, 0.1, 0.0, 0.4e-3)
     clean = np.concatenate([log.x[a:z] for a, z in windows])[:, None]
     y = clean + 5e-6 * np.random.default_rng(0).standard_normal((len(clean), 120))
-    start, scales = (np.repeat(a[:, None], 120, axis=1) for a in _start(log, windows, own))
-    found = fit(_motion(log, windows, own), y, [start[:, None]], lambda _: scales)
+    start, scales = (np.repeat(a[:, None], 120, axis=1) for a in _start(log, windows, handle))
+    found = fit(_motion(log, windows, handle, 0), y, [start[:, None]], lambda _: scales)
     true = np.array(list(TRUE.values()))[:, None]
     covered = (np.abs(found.values[:3] - true) < found.half_width()[:3]).mean(axis=1)
     # four standard errors of 120 draws with 95 %
@@ -146,3 +147,52 @@ def test_all_pushes_on_their_leash_fit_the_slowest_board(monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         hl.identify.pushes(PADDLE)
     assert cost(hl.compile(scenes[0], T=1e-3), board="uno").fits
+
+
+def measured(**constants):
+    """Return a profile of PADDLE's handle with constants that were measured: value and half of the interval."""
+    units = {"m": "kg", "b": "N s/m", "delay": "s", "sensor_delay": "s"}
+    found = [hl.identify.Estimate(name, at, at - half, at + half, units[name]) for name, (at, half) in constants.items()]
+    values = {"m": 0.03, "b": 0.1, "delay": 0.4e-3} | {one.name: one.value for one in found}
+    return hl.devices.PaddleProfile("measured", **values, estimates=tuple(found))
+
+
+def test_the_interval_of_a_hand_contains_that_of_the_handle():
+    """The squares of the shifts of whole fits with one constant at its end add up to those of the widened interval."""
+    known = {"m": (0.03, 2e-3), "b": (0.1, 0.03), "sensor_delay": (1e-4, 1e-4)}
+    log, profile = hl.identify.pushes(replace(PADDLE, sensor_delay=1e-4), pushes=2), measured(**known)
+    exact = profile.at(**{name: at for name, (at, _) in known.items()})
+    alone, wide = hl.identify.hand(log, exact), hl.identify.hand(log, profile)
+    ends = [hl.identify.hand(log, exact.at(**{name: at + half})) for name, (at, half) in known.items()]
+    for name in TRUE:
+        shifts = [end[name].value - alone[name].value for end in ends]
+        assert wide[name].value == alone[name].value
+        assert wide[name].half_width ** 2 == pytest.approx(alone[name].half_width ** 2 + np.sum(np.square(shifts)), rel=0.03)
+    assert wide["m"].half_width > 1.5 * alone["m"].half_width
+
+
+def test_a_mass_that_is_off_within_its_interval_is_covered():
+    log = hl.identify.pushes(PADDLE, pushes=2)
+    off = measured(m=(0.032, 3e-3), delay=(0.4e-3, 1e-5))
+    assert 0.1 in hl.identify.hand(log, off)["m"] and 0.1 not in hl.identify.hand(log, off.at(m=0.032))["m"]
+
+
+def test_the_delay_is_that_of_the_profile_and_not_that_of_the_record(tmp_path):
+    """What the simulation knows of its sensor stays hidden; a computation whose time nobody identified is as recorded."""
+    log = hl.identify.pushes(replace(PADDLE, sensor_delay=6e-4), pushes=2)
+    twin = measured(delay=(0.4e-3, 1e-5), sensor_delay=(6e-4, 1e-5))
+    found = hl.identify.hand(log, twin)
+    check(found, **TRUE)
+    assert hl.identify.hand(replace(log, delay=5e-3, sensor_delay=5e-3), twin)["k"] == found["k"]
+    assert hl.identify.hand(log, str(twin.save(tmp_path / "bench7")))["k"] == found["k"]
+    early = hl.identify.hand(log, twin.at(sensor_delay=0.0))
+    assert not early.explained or 5.0 not in early["b"]
+    nominal = hl.devices.PaddleProfile("nominal", m=0.03, b=0.1, delay=9e-3, sensor_delay=6e-4)
+    check(hl.identify.hand(log, nominal), **TRUE)
+
+
+def test_a_handle_of_unknown_mass_is_not_taken_for_a_hand():
+    log = hl.identify.pushes(PADDLE, pushes=1)
+    for unknown in (None, hl.Device(b=0.1, T=1e-3), log):
+        with pytest.raises(AnalysisError, match=r"the paddle is not known\. Give device=, such as a twin"):
+            hl.identify.hand(log, unknown)

@@ -134,7 +134,10 @@ def _check(scene, paddle):
             f"{scene.name}: no value for {', '.join(unbound)}; bind them: scene({given}), on the command line {command}"
         )
     if not isinstance(getattr(paddle, "b", None), Real):
-        raise AnalysisError(f"paddle = {paddle!r}; needs a SimulatedPaddle or a PaddleProfile, such as hl.library.nominal")
+        raise AnalysisError(
+            f"paddle = {paddle!r}; needs a SimulatedPaddle or a PaddleProfile, such as hl.library.nominal or "
+            "hl.devices.profile('bench7.json')"
+        )
 
 
 def _motions(given, scene, paddle, T):

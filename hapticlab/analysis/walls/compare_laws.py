@@ -200,7 +200,10 @@ def compare_laws(
 def _checked(paddle, laws, entries):
     """Return the names of the laws, or say what no comparison can be made of."""
     if not isinstance(paddle, SimulatedPaddle):
-        raise AnalysisError(f"compare_laws simulates a bounce under every law; needs a SimulatedPaddle, not {what_is(paddle)}")
+        raise AnalysisError(
+            f"compare_laws simulates a bounce under every law; needs a SimulatedPaddle, not {what_is(paddle)}. "
+            "hl.SimulatedPaddle.from_profile(...) makes one of a profile or its file"
+        )
     count("entries", entries)
     return checked_laws(laws)
 

@@ -205,7 +205,10 @@ class WallMaps:
 
     def _check(self, paddle, over, unusable):
         if not isinstance(paddle, SimulatedPaddle):
-            raise AnalysisError(f"a map simulates thousands of contacts; needs a SimulatedPaddle, not {what_is(paddle)}")
+            raise AnalysisError(
+                f"a map simulates thousands of contacts; needs a SimulatedPaddle, not {what_is(paddle)}. "
+                "hl.SimulatedPaddle.from_profile(...) makes one of a profile or its file"
+            )
         if len(over) != 2 or over[0] != "K" or over[1] not in OTHERS:
             raise AnalysisError(f'over = {over}; needs ("K", other) with other one of {", ".join(OTHERS)}')
         if over[1].startswith("hand_") and paddle.hand is None:

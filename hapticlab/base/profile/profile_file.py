@@ -34,6 +34,11 @@ def read_profile(path):
     try:
         with open(path, "rb") as file:
             data = file.read(LARGEST + 1)
+    except FileNotFoundError:
+        raise PaddleError(
+            f"{named}: there is no such file. hapticlab looks in the folder of the notebook or program, unless the path names "
+            "another one. Put the file there, or save a profile: profile.save() writes it, as at the end of lab 09."
+        ) from None
     except (OSError, ValueError) as problem:  # the latter for a name that no file can have
         why = getattr(problem, "strerror", None) or problem
         raise PaddleError(

@@ -7,6 +7,7 @@ from ...compiler.boards.board_records import BOARDS, Drive
 from ...errors import LinkError
 from ..link.messages import FIRMWARE, RESET_CAUSES, STATES, row_of, table_hash
 from .run import fault_words
+from .settings import day_in_words
 
 #: how long a board may take to answer, from reset [s]
 HELLO = 3.0
@@ -62,8 +63,7 @@ def introduction(board, settings, T):
     parts = [f"{board['board']} {board['ident']:04X}", f"firmware {board['major']}.{board['minor']}", f"T = {T * 1e3:g} ms"]
     if settings is None:
         return ", ".join([*parts, "not calibrated, so the motor stays off (run `hapticlab calibrate`)"])
-    day = str(settings.date)
-    calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day[:4]}-{day[4:6]}-{day[6:]}"
+    calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day_in_words(settings.date)}"
     parts += [calibrated, f"|F| <= {min(settings.force_max, settings.force_full):.4g} N"]
     if not settings.wired:
         parts.append("wiring not confirmed, so the motor stays off (run `hapticlab calibrate`)")

@@ -1,6 +1,7 @@
 """What a board keeps over power-off: its calibration, its limits, its name."""
 
 import math
+import re
 import zlib
 from bisect import bisect
 from dataclasses import dataclass, fields, replace
@@ -52,6 +53,21 @@ def pins_of(word):
 
 #: of an encoder, or of an angle sensor that nobody named
 NO_PINS = pin_word()
+#: duties at a quarter, half and three quarters of the force
+CURVE = ("duty_25", "duty_50", "duty_75")
+_DAY = re.compile(r"\b(\d{4})-(\d\d)-(\d\d)\b")
+
+
+def day_in_words(date):
+    """Return the day of a calibration, as settings keep it.
+
+    Examples
+    --------
+    >>> day_in_words(20261120)
+    '2026-11-20'
+    """
+    day = str(date)
+    return f"{day[:4]}-{day[4:6]}-{day[6:]}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,10 +177,10 @@ class Settings(ShowsItself):
         if not self.m:
             raise PaddleError("m = 0 in the board's settings, so its mass is not known. Identify it: hl.identify.paddle(paddle)")
         measured = self.motor_law == MOTOR_LAWS["MEASURED"]
-        curve = {name: getattr(self, name) for name in ("duty_25", "duty_50", "duty_75")} if measured else {}
+        curve = {name: getattr(self, name) for name in CURVE} if measured else {}
         return PaddleProfile(
             f"board {self.ident:04X}", T=T, counts_per_metre=1 / abs(self.metres_per_count), nominal=self.is_nominal,
-            source="settings of a board" + ("" if self.is_nominal else f", calibrated on {self.date}"),
+            source="settings of a board" + ("" if self.is_nominal else f", calibrated on {day_in_words(self.date)}"),
             **{name: getattr(self, name) for name in _OF_PROFILE}, **curve,
         )  # fmt: skip
 
@@ -289,23 +305,47 @@ def nominal(profile, **changes):
     """
     if profile not in NOMINAL:
         raise PaddleError(f"no nominal settings for {profile!r}; they exist for {', '.join(NOMINAL)}.")
-    kind = named_profile(profile)
+    return _settings(named_profile(profile), **{**NOMINAL[profile], **changes})
+
+
+def of_profile(kind):
+    """Return what the board of a paddle with this profile keeps; None if no kind has its wiring, or its drive is not known."""
+    usual = next((name for name in NOMINAL if named_profile(name).wiring == kind.wiring), None)
+    if usual is None or None in (kind.counts_per_metre, kind.force_max, kind.force_full, kind.carrier):
+        return None
+    curve = {name: getattr(kind, name) for name in CURVE if kind.duty_25 is not None}
+    values = {**NOMINAL[usual], **curve, "carrier": int(kind.carrier), "date": _day_of(kind), "wired": 1, "checked": 1}
+    values |= {"motor_law": MOTOR_LAWS["MEASURED"]} if curve else {}
+    values["force_continuous"] = min(values["force_continuous"], kind.force_max)
+    return _settings(kind, **values)
+
+
+def _settings(kind, **values):
     known = {"metres_per_count": 1 / kind.counts_per_metre, **{name: getattr(kind, name) for name in _OF_PROFILE}}
-    values = {**known, **_USUAL, **NOMINAL[profile], **changes}
+    values = {**known, **_USUAL, **values}
     usual = {SENSORS[name]: pins for name, pins in _SENSOR_PINS.items()}.get(values["sensor"], NO_PINS)
     return Settings(**{"sensor_pins": usual, **values})
+
+
+def _day_of(kind):
+    """The last day on which a constant of a profile was measured, as a number of a board's settings; 0 if none was."""
+    if kind.nominal:
+        return 0
+    told = " ".join([kind.source, *(one.source for one in kind.estimates)])
+    return max((int("".join(day)) for day in _DAY.findall(told)), default=0)
 
 
 def simulated(paddle):
     """Return the settings of a board around a simulated paddle: ideal where the paddle says nothing."""
     full = paddle.force_full or paddle.force_max or 20.0
-    curve = {name: getattr(paddle, name) for name in ("duty_25", "duty_50", "duty_75") if paddle.duty_25 is not None}
+    curve = {name: getattr(paddle, name) for name in CURVE if paddle.duty_25 is not None}
     return Settings(
         **curve,
         motor_law=MOTOR_LAWS["MEASURED" if curve else "LINEAR"],
         duty_dead=paddle.duty_dead,
         sensor_delay=paddle.sensor_delay,
         sensor_noise=paddle.noise,
+        date=_day_of(paddle.profile) if paddle.profile else 0,
         wired=1,
         checked=1,
         metres_per_count=1 / (paddle.counts_per_metre or 1e7),  # without an encoder a tenth of a micrometre

@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 from ...base.in_notebook import is_in_browser
+from ...base.profile.profile_file import SUFFIX
 from ...compiler.boards.board_records import BOARDS
 from ...errors import HapticlabError, PortError
 from .port_faults import explain
@@ -109,6 +110,10 @@ def open_port(url, *, baudrate=BAUDRATE, timeout=0.05):
             f"{url}: {PORTS}=sim allows simulated paddles only, for example while a notebook is graded. Use sim://hapkit "
             "there, or unset it for a real paddle with a person at the handle",
             "refused",
+        )
+    if url.lower().endswith(SUFFIX) and "://" not in url:
+        raise PortError(
+            f'{url} is a file and not a port. If it holds a profile, open "sim://{url}", a simulated board with it', "url"
         )
     if is_in_browser() and not url.lower().startswith("sim://"):
         raise PortError(f"{url}: {IN_A_BROWSER}", "missing")

@@ -15,6 +15,9 @@ from ..simulated.simulated_paddle import SimulatedPaddle
 if TYPE_CHECKING:
     from ...base.annotations import Number
 
+#: sampling period of a board where none is given [s]
+USUAL_T = 1e-3
+
 
 def connect(
     port: str | None = None, *, T: Number | None = None, paddle: SimulatedPaddle | None = None, hello: Number = 3.0
@@ -24,11 +27,11 @@ def connect(
     Parameters
     ----------
     port : str, optional
-        ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. Without it, only
-        ports with the USB numbers of a known board are tried, and the one that answers as a paddle is used. Python in a
-        browser opens ``sim://`` alone.
+        ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. ``sim://bench7.json``
+        is a simulated board with the profile in this file. Without a port, only ports with the USB numbers of a known
+        board are tried, and the one that answers as a paddle is used. Python in a browser opens ``sim://`` alone.
     T : float or text, optional
-        Sampling period [s], whole microseconds within the board's range; 1 ms, or that of ``paddle``.
+        Sampling period [s], whole microseconds within the board's range; 1 ms, or that of a simulated paddle.
     paddle : SimulatedPaddle, optional
         The mechanics behind a ``sim://`` port.
     hello : float or text
@@ -51,24 +54,26 @@ def connect(
     host 0000, firmware 2.0, T = 1 ms, nominal constants, not calibrated, |F| <= 3.3 N
     """
     if paddle is not None and not isinstance(paddle, SimulatedPaddle):
-        raise PaddleError(f"paddle = {paddle!r}; needs a SimulatedPaddle, the mechanics of a simulated board.")
+        raise PaddleError(
+            f"paddle = {paddle!r}; needs a SimulatedPaddle, the mechanics of a simulated board. "
+            'hl.SimulatedPaddle.from_profile(...) makes one of a profile; connect("sim://bench7.json") takes its file.'
+        )
     T = T if T is None else number("T", T, "s", "a paddle", above=0, error=PaddleError)
     if paddle is not None and T not in (None, paddle.T):
         raise PaddleError(f"T = {T} s, but the paddle has T = {paddle.T:g} s. Give only one of them.")
-    T = T if T is not None else paddle.T if paddle is not None else 1e-3
     if port is None:
         if paddle is not None:
             raise PaddleError('paddle= is the mechanics of a simulated board: connect("sim://hapkit", paddle=...)')
-        return _first_found(T, hello)
+        return _first_found(USUAL_T if T is None else T, hello)
     opened = open_port(port)
     if not hasattr(opened, "put_on"):
         if paddle is not None:
             opened.close()
             raise PaddleError(f'paddle= is for a simulated board, which {port} is not. Write connect("sim://hapkit", paddle=...)')
-        return SerialPaddle(port, T=T, port=opened, hello=hello)
+        return SerialPaddle(port, T=USUAL_T if T is None else T, port=opened, hello=hello)
     if paddle is not None:
         opened.put_on(paddle)
-    board = SerialPaddle(port, T=T, port=opened, hello=hello)
+    board = SerialPaddle(port, T=opened.paddle.T if T is None else T, port=opened, hello=hello)
     board.home(at=opened.handle.x)  # nobody's hand is on a simulated handle: where it starts is known
     return board
 

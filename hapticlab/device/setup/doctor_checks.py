@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import HapticlabError, LinkError, PaddleError, PortError
 from ..board.homing import state_flag
-from ..board.settings import pins_of
+from ..board.settings import day_in_words, pins_of
 from ..link.messages import RESET_CAUSES, SENSORS, row_of, table_hash
 from ..link.serial_ports import open_port
 from ..wiring import Wiring
@@ -117,8 +117,7 @@ def settings(paddle):
             f"nominal: {words}",
             "run `hapticlab calibrate`, because no value was measured on this paddle",
         )
-    day = str(kept.date)
-    return Check("settings", "ok", f"{words}, calibrated {day[:4]}-{day[4:6]}-{day[6:]}")
+    return Check("settings", "ok", f"{words}, calibrated {day_in_words(kept.date)}")
 
 
 def wiring(paddle, person):

@@ -221,7 +221,7 @@ class SimulatedPaddle(Paddle):
     @classmethod
     def from_profile(cls, profile: PaddleProfile | File, **changes: Any) -> SimulatedPaddle:
         """Return a paddle with the constants of a profile, or of its name or file: ``from_profile("eth", T=5e-4)``."""
-        profile = profile if isinstance(profile, PaddleProfile) else named_profile(profile)
+        profile = named_profile(profile)
         own = {f.name for f in fields(cls)}
         known = {RENAMED.get(f.name, f.name): getattr(profile, f.name) for f in fields(PaddleProfile)}
         unknown = sorted(set(changes) - own)

@@ -1,26 +1,30 @@
 """``sim://``: the firmware's own core on this computer, closed around a simulated paddle, behind a serial port.
 
-``sim://hapkit`` takes the mechanics, the sensor and the drive of a profile; ``sim://hapkit?pace=real`` runs by the clock
-on the wall; where there are no threads it catches up with the clock whenever somebody looks. Without a pace time is virtual: it
-passes while somebody reads, as fast as the computer can, so that the same calls give the same run.
+``sim://hapkit`` takes the mechanics, the sensor and the drive of a profile, ``sim://bench7.json`` those of the profile in a
+file; ``sim://hapkit?pace=real`` runs by the clock on the wall; where there are no threads it catches up with the clock whenever
+somebody looks. Without a pace time is virtual: it passes while somebody reads, as fast as the computer can, so that the same
+calls give the same run.
 """
 
 import threading
 import time
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
 
 from serial import SerialBase
 
+from ...base.profile.profile_file import SUFFIX
 from ...errors import PaddleError, PortError
 from ..board.host_board import HostBoard
-from ..board.settings import changed, nominal, simulated
+from ..board.settings import changed, of_profile, simulated
 from ..link.messages import MOTOR_LAWS, SENSORS
-from ..profiles import PROFILES
+from ..profiles import PROFILES, kind_named, profile
 from ..simulated.angle_sensor import AngleSensor
 from ..simulated.moved_handle import Handle
 from ..simulated.simulated_paddle import SimulatedPaddle
 from ..turns import begin, has_threads
+from ..variants import VARIANTS
 
+SCHEME = "sim://"
 #: of ticks that are late, made up for at once [s]
 LONGEST_BURST = 0.03
 #: between two looks of a read that waits by itself [s]
@@ -28,7 +32,7 @@ LOOK = 1e-3
 
 
 class Serial(SerialBase):
-    """A port of a simulated board; see the module. ``paddle`` may be replaced before the first read.
+    """A port of a simulated board; see the module. ``put_on`` replaces its ``paddle`` before the first read.
 
     ``wiring`` is what lies between the board and its motor: 1 right, -1 swapped wires, 0 no supply. ``sensor`` is what lies
     between the sensor and the board: counts in, counts out.
@@ -55,6 +59,7 @@ class Serial(SerialBase):
         """
         paddle, usual, kept = _mechanics(self._at, paddle)
         with self._changed:
+            self.paddle = paddle
             self.settings = (settings or usual).to_float32()
             kept = kept if settings is None else self.settings
             self.board = HostBoard(kept.to_bytes() if store is None else store)
@@ -172,25 +177,39 @@ class Serial(SerialBase):
 
 
 def _parts(url):
-    parts = urlsplit(url)
-    options = parse_qs(parts.query, keep_blank_values=True)
-    unknown = sorted(set(options) - {"pace"}) + [part for part in parts.path.split("/") if part]
+    """Return the profile that a URL names, which may be the path of a file on any system, and the pace."""
+    at, _, query = url[len(SCHEME) :].partition("?")
+    at = at if at.endswith(SUFFIX) else at.rstrip("/")
+    options = parse_qs(query, keep_blank_values=True)
+    unknown = sorted(set(options) - {"pace"})
     if unknown:
         raise PaddleError(
             f"{url}: {unknown[0]} is not an option of a simulated board. The only option is pace=real: sim://hapkit?pace=real"
         )
-    return parts.netloc, options.get("pace", ["virtual"])[0]
+    return at, options.get("pace", ["virtual"])[0]
+
+
+def _profile_at(at):
+    """Return the profile that a URL names, by its kind or its file."""
+    if not at.endswith(SUFFIX) and kind_named(at) is None:
+        names, more = ", ".join(f"{SCHEME}{name}" for name in PROFILES), ", ".join(f"_{word}" for word in VARIANTS)
+        raise PaddleError(
+            f"{SCHEME}{at}: no such paddle; there are {names}, each also with {more}. A file that profile.save() wrote is a "
+            f"paddle too: {SCHEME}bench7.json"
+        )
+    try:
+        return profile(at)
+    except PaddleError as refusal:
+        raise PaddleError(f"{SCHEME}{at}: {refusal}") from None
 
 
 def _mechanics(at, paddle):
     """Return the paddle, the settings that are true of it, and those that its board keeps."""
-    if paddle is None and at in PROFILES:
-        paddle = SimulatedPaddle.from_profile(at)
-        if PROFILES[at].wiring:
-            kept = nominal(at, wired=1, checked=1)
+    if paddle is None:
+        kind = _profile_at(at)
+        paddle, kept = SimulatedPaddle.from_profile(kind), of_profile(kind)
+        if kept is not None:
             return paddle, kept, kept
-    if paddle is not None:
-        true = simulated(paddle)
-        plain = {} if paddle.compensated else {"duty_dead": 0.0, "motor_law": MOTOR_LAWS["LINEAR"]}
-        return paddle, true, changed(true, **plain)
-    raise PaddleError(f"sim://{at}: no such paddle; there are {', '.join(f'sim://{name}' for name in PROFILES)}.")
+    true = simulated(paddle)
+    plain = {} if paddle.compensated else {"duty_dead": 0.0, "motor_law": MOTOR_LAWS["LINEAR"]}
+    return paddle, true, changed(true, **plain)

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 
 from ...device.hand.hand import Hand
 from ...device.hand.hand_presets import PRESETS
-from ...device.profiles import PROFILES
+from ...device.profiles import kind_named
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from .scene_code import scene_code
 
@@ -53,7 +53,7 @@ def why_private(text):
 
 
 def _paddle(paddle):
-    named = PROFILES.get(paddle.profile.name) if paddle.profile else None
+    named = kind_named(paddle.profile.name) if paddle.profile else None
     if named is not None and named == paddle.profile:
         of = f'hl.SimulatedPaddle.from_profile("{named.name}"'
         changes = _changes(paddle, SimulatedPaddle.from_profile(named), "profile")

@@ -96,7 +96,7 @@ def share(
     if not isinstance(paddle, SimulatedPaddle):
         raise PaddleError(
             f"paddle = {paddle!r}; a shared file runs on a simulated paddle, since it never opens a port. Give "
-            "hl.SimulatedPaddle(...)"
+            "hl.SimulatedPaddle(...), or hl.SimulatedPaddle.from_profile(...) of a profile or its file"
         )
     path = Path(_file_name(scene.name) if path is None else path)
     if path.suffix.lower() not in (".html", ".htm"):  # a browser shows others as text, and a scene file would be lost

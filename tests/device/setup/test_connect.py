@@ -113,7 +113,7 @@ def test_a_simulated_handle_that_starts_elsewhere_is_where_it_is():
         (lambda: hl.connect("sim://hapkit", T=1), "T = 1 s; this board needs 5e-05 to 0.03 s. Use T=0.03"),
         (lambda: hl.connect("sim://hapkit", paddle=5), "paddle = 5; needs a SimulatedPaddle"),
         (lambda: hl.connect("sim://hapkit?pce=real"), r"pce is not an option of a simulated board\. .*pace=real"),
-        (lambda: hl.connect("sim://hapkit/x"), "x is not an option of a simulated board."),
+        (lambda: hl.connect("sim://hapkit/x"), "sim://hapkit/x: no such paddle"),
         (
             lambda: hl.connect("sim://hapkit", T=1e-3, paddle=hl.SimulatedPaddle(m=1, b=1, T=2e-3)),
             "T = 0.001 s, but the paddle has T = 0.002 s. Give only one of them.",
