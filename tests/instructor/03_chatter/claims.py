@@ -46,12 +46,12 @@ CLAIMS = [
     (
         "keep still: the force is about 1 N, and the handle is calm",
         lambda lab: lab.trials.buzz.lowest > lab.limit * 2 / 3,
-        "buzz above",
+        "um make the handle buzz above",
     ),
     (
         "Chatter begins at a certain *stiffness*, not at a certain force",
         begins_at_a_stiffness,
-        "of dry friction, which stops a small",
+        "stops a small oscillation between these two",
     ),
     (
         "If you press harder, the chatter becomes larger",
