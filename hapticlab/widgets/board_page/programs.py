@@ -51,13 +51,13 @@ def choices():
 def labs():
     """Walls and springs as the labs have them, with what a paddle is left to hold."""
     k, left, right, x_o = parameters("k k_left k_right x_o", units="N/m N/m N/m m")
-    spring = Scene(force=k * x(n), name="spring")
+    spring, predicts = Scene(force=k * x(n), name="spring"), wall("backward_difference")
     two = Scene(force=when(x(n) > x_o, right * (x(n) - x_o), when(x(n) < -x_o, left * (x(n) + x_o), 0)), name="two walls")
     return [
         Choice("wall", "A wall (labs 00 to 03)", wall()(k=300, x_o=0.01), {"k": (50, 1500), "x_o": (0, 0.03), "B": (0, 2)}),
         Choice("spring", "A spring (lab 00)", spring(k=100), {"k": (10, 400)}),
-        Choice("zoh", "A wall that compensates for the hold (lab 04)", wall("zoh")(k=300, x_o=0.01), {"k": (50, 3000)}),
-        Choice("ellis", "A wall by the law of Ellis (lab 04)", wall("ellis")(k=300, x_o=0.01), {"k": (50, 3000)}),
+        Choice("half_sample", "A wall that compensates for the hold (lab 11)", predicts(k=300, x_o=0.01), {"k": (50, 3000)}),
+        Choice("ellis", "A wall by the law of Ellis (lab 11)", wall("ellis")(k=300, x_o=0.01), {"k": (50, 3000)}),
         Choice(
             "two_walls",
             "Two walls to compare (lab 10)",

@@ -57,7 +57,7 @@ for delay in (0.0, 0.5e-3):
     exact = hl.stability_limit(slow)
     print(f"{exact.K:9.1f} N/m at {exact.frequency:4.1f} Hz")
 
-# lab 04: the laws of the chapter
+# lab 11: the laws of the chapter
 for law in ("zoh", "backward_difference", "ellis"):
     print(
         f"{law:20} {hl.passivity_limit(hl.Device(b=0.1, T=1e-3), law=law).K:10.0f} N/m", hl.compile(hl.wall(law)(k=500), T=1e-3)

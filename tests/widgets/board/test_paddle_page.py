@@ -5,10 +5,13 @@ import re
 import subprocess
 
 import core_in_node
+import numpy as np
 import pytest
 
+import hapticlab as hl
 from hapticlab.compiler.boards.board_records import BOARDS
 from hapticlab.compiler.engines.bytecode import layout
+from hapticlab.compiler.engines.engine import load
 from hapticlab.device.link.messages import FAULTS, LARGEST_PAYLOAD, RESULTS
 from hapticlab.widgets.board_page.page import BOARD_SCRIPTS, paddle_page
 from hapticlab.widgets.board_page.programs import choices, labs, page_data
@@ -86,6 +89,14 @@ def fits(scene):
         assert told["about"]["kind"] == "board" and told["about"]["T"] == pytest.approx(told["T"] * told["every"])
         assert {p["name"] for p in told["about"]["parameters"]} <= {p["name"] for p in told["parameters"]}
         assert "Space and Esc stop it" in told["about"]["help"]
+
+
+def test_the_wall_that_compensates_for_the_hold_gives_the_force_of_half_a_period_later():
+    (choice,) = [choice for choice in labs() if "compensates for the hold" in choice.title]
+    samples = 0.012 + 1e-4 * np.arange(6)  # inside, at one speed
+    program = hl.compile(choice.scene, T=1e-3, dtype="float64")
+    force = load(program).run(len(samples), samples[:, None]).outputs[1:, 0, 0]
+    np.testing.assert_allclose(force, choice.scene.values["k"] * (samples[1:] + 0.5e-4 - choice.scene.values["x_o"]))
 
 
 def test_a_scene_of_the_page_fits_its_boards(wall):
