@@ -20,12 +20,12 @@ CLAIMS = [
     (
         "After you let go, the pendulum swings *faster*",
         lambda lab: lab.let_go > 1.1 * lab.held_fast,
-        "holds your handle after you let go",
+        "holds the handle after you let go",
     ),
     (
         "The theory is that of small swings of a free carriage",
         lambda lab: abs(lab.on_rail / lab.let_go - 1) < 0.03,
-        "holds your handle after you let go",
+        "holds the handle after you let go",
     ),
     ("A calm pendulum makes 0.1 to 0.2 N in the pinch", lambda lab: all(0.1 < force < 0.2 for force in lab.pinched[:4]), ""),
     (
