@@ -12,6 +12,7 @@ Next: ``hl.library`` for ready scenes, ``hl.contact`` for bodies that touch, ``h
 
 from .analysis.impedance.reduction import reduction
 from .analysis.pictures.pictures import picture
+from .analysis.programs.felt_difference import felt_difference
 from .analysis.programs.requires import requires
 from .scene.mechanics.device_image import device_image
 from .scene.mechanics.lagrange import Mechanics, lagrange
@@ -21,6 +22,7 @@ from .vocabulary import page
 __all__ = [
     "Mechanics",
     "device_image",
+    "felt_difference",
     "from_mechanics",
     "lagrange",
     "picture",

@@ -13,6 +13,7 @@ A hand takes a movement as its ``intent``. Here it reaches 20 mm in the way that
 ``hl.people.forced_choice`` asks what a person feels, and ``hl.people.compare_blind`` asks it in a notebook.
 """
 
+from .analysis.programs.thresholds import Thresholds
 from .device.hand.hand_presets import hand_presets
 from .device.hand.intents import MinimumJerk, Tremor
 from .device.hand.random_hands import random_hands
@@ -50,6 +51,7 @@ __all__ = [
     "Rehearsal",
     "SimulatedObserver",
     "Task",
+    "Thresholds",
     "Tremor",
     "UpDown",
     "assistance",
