@@ -11,7 +11,7 @@ from ..base.arguments import having, number
 from ..base.profile.estimate import Estimate
 from ..device.board.serial_paddle import SerialPaddle
 from ..errors import AnalysisError, PaddleError
-from .handle_records import HandleRecord, identify
+from .handle_records import MOVED, HandleRecord, identify
 from .identifying_forces import LEAD, Excitation, centring, designed
 from .paddle_fit import PaddleFit
 from .twin import bounded, exact
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 FIRST, GROWS = 1 / 64, 2**0.5
 #: parts of the travel that a handle moves, at least, for its constants to be known roughly; steps' lengths [s] of the search
 FOUND, PILOT = 0.05, 0.02
+#: times the counts that tell anything, which the handle moves by
+ENOUGH = 1.1
 #: N and m, where neither paddle nor caller says
 FORCE, TRAVEL = 1.0, 0.02
 #: s that a handle is led back for, and damping over stiffness of what leads it [s]
@@ -161,17 +163,23 @@ def _rests(paddle):
 
 
 def _pilot(paddle, force, travel):
-    """A record of the first force that moves the handle by FOUND of the travel, and that force [N]."""
+    """A record of the first force that moves the handle by FOUND of the travel, and enough counts; and that force [N]."""
     length, size = max(4, round(PILOT / paddle.T)), force * FIRST
+    least = max(FOUND * travel, ENOUGH * MOVED / abs(counts_per_metre_of(paddle) or np.inf))
+    if least > travel:
+        raise AnalysisError(
+            f"hl.identify.paddle: travel = {1e3 * travel:.3g} mm; this encoder needs {1e3 * least:.3g} mm, because fewer than "
+            f"{MOVED} counts determine nothing. Give a larger travel="
+        )
     while True:
         steps = Excitation("steps", size, length, 2 * LEAD + 8 * length)
         log = _run(paddle, steps, force, travel)
-        if np.ptp(log.x) >= FOUND * travel:
+        if np.ptp(log.x) >= least:
             return HandleRecord(log, at_rest=_rests(paddle)), size
         if size >= force:
             raise AnalysisError(
                 f"hl.identify.paddle: {force:.3g} N moves the handle by {1e3 * np.ptp(log.x):.2g} mm only; needs "
-                f"{1e3 * FOUND * travel:.2g} mm. Check the motor's supply, make sure that nobody holds the handle, or give "
+                f"{1e3 * least:.2g} mm. Check the motor's supply, make sure that nobody holds the handle, or give "
                 "a larger force="
             )
         size = min(size * GROWS, force)

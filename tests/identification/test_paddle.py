@@ -45,6 +45,9 @@ def test_records_of_a_simulated_paddle_have_noise_of_their_own():
 
 def test_a_paddle_that_does_not_move_is_told():
     paddle = hl.SimulatedPaddle(**BODY | {"coulomb": 2.0}, force_max=1.0)
+    coarse = hl.SimulatedPaddle(**BODY, counts_per_metre=1e3)
+    with pytest.raises(AnalysisError, match=r"travel = 8 mm; this encoder needs 22 mm, .*Give a larger travel="):
+        hl.identify.paddle(coarse, travel=0.008)
     with pytest.raises(AnalysisError, match="1 N moves the handle by .* mm only; needs 1 mm.*nobody holds"):
         hl.identify.paddle(paddle)
 
@@ -81,3 +84,10 @@ def test_a_board_whose_force_is_not_what_it_reckons_is_found_out_by_a_known_mass
     found = moved(0.05, added=0.02, beside=alone.records)
     check(found, m=0.03, b=0.1, coulomb=0.05, scale=0.8)
     assert found["scale"].half_width < 0.01
+
+
+def test_the_search_moves_a_coarse_encoder_by_enough_counts():
+    """20 counts are 2 mm here, of which a twentieth of the travel is 0.4 mm."""
+    coarse = hl.SimulatedPaddle.from_profile("hapkit_coarse", coulomb=0.05, noise=8e-6)
+    found = hl.identify.paddle(coarse, kinds=("steps",), travel=0.008)
+    assert 0.03 in found["m"] and 0.1 in found["b"] and 0.05 in found["coulomb"]

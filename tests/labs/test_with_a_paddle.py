@@ -19,7 +19,7 @@ def cells(number):
     return code_of(read(LABS[number].notebook))
 
 
-@pytest.mark.parametrize(("number", "asks"), [("09", 3), ("10", 1)])
+@pytest.mark.parametrize(("number", "asks"), [("09", 4), ("10", 1)])
 def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeypatch):
     asked, started = [], []
 
@@ -34,7 +34,8 @@ def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeyp
         names = {"board": board}
         head, simulated, tail = first.partition("simulated = ")
         exec(f"{head}\npaddle = held = board\n{simulated}{tail}", names)
-        names["found"] = SimpleNamespace(profile=lambda: None)  # the cell that makes it is refused
+        # the cells that make them are refused
+        names |= {"found": SimpleNamespace(profile=lambda: None), "twin": hl.devices.profile("hapkit_rough"), "T": 1e-3}
         for cell in rest:
             if re.search(r"paddle\.run\(|\((paddle|held)[,)]|= task\.|_choice\(", cell) and "hl.live(" not in cell:
                 with contextlib.suppress(Exception):  # EOFError, and the names that a cell refused does not make
