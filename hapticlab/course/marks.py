@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from .exercise import Exercise, Lab
 
 SOLUTION, HIDDEN = "solution.py", "hidden.py"
-#: beside them, wrong answers that test a lab's sentences; no grader reads it
-WRONG = "wrong.py"
+#: beside them, what tests a lab's sentences: wrong answers, and statements about every paddle; no grader reads these
+WRONG, CLAIMS = "wrong.py", "claims.py"
 #: what a student's own numbers are drawn by: no exercise can have this name
 NUMBERS = "numbers()"
 

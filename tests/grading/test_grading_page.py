@@ -106,7 +106,7 @@ def test_the_lab_of_the_page_checks_itself_gives_own_numbers_and_can_be_assigned
     answers = tmp_path / "answers" / "20_spring"
     cells = code_of(solved_notebook(own_lab, answers))
     checks = [cell for cell in cells if cell.startswith("hl.check")]
-    names, problems = run([*cells, f"judged = [{', '.join(checks)}]"], own_lab.path)
+    names, problems, _ = run([*cells, f"judged = [{', '.join(checks)}]"], own_lab.path)
     assert problems == [] and [one.passed for one in names["judged"]] == [True] * 6
     lines = ["".join(cell["source"]) for cell in personal_notebook(own_lab, answers, 3, "ada")["cells"]]
     assert re.search(r"^K_OWN = (300|400|750)\.0", "\n".join(lines), re.M)

@@ -7,7 +7,7 @@ import zipfile
 from pathlib import Path
 
 from ...course.labs import CHECKS
-from ...course.marks import HIDDEN, SOLUTION, WRONG
+from ...course.marks import CLAIMS, HIDDEN, SOLUTION, WRONG
 from ...errors import CourseError
 
 #: Gradescope's system may bring an older Python than hapticlab needs: uv finds one or brings it, where every user may read
@@ -79,7 +79,9 @@ def bundle(folder, answers):
     if missing:
         raise CourseError(f"{answers} has no {' and no '.join(missing)}; an instructor's folder of a lab needs both")
     files = {**_files(folder.path, f"labs/{folder.name}"), **_files(answers, f"answers/{folder.name}")}
-    return {name: content for name, content in files.items() if name != f"answers/{folder.name}/{WRONG}"}
+    for name in (WRONG, CLAIMS):
+        files.pop(f"answers/{folder.name}/{name}", None)
+    return files
 
 
 def gradescope_files(folder, answers, package, seed=0, wheel=None, personal=False):
