@@ -13,6 +13,9 @@ Next: ``hl.stability_limit`` for the theory, ``hl.stability.wall_map`` for a map
 from .measurement.impedance import measured_impedance as impedance
 from .measurement.impedance_plan import Averaging, Excitation, Safety
 from .measurement.largest_stiffness import largest_stiffness
+from .measurement.quality.comparison import compare_qualities
+from .measurement.quality.join import paddle_quality as quality
+from .measurement.quality.join import read_quality
 from .measurement.search import Judgement, Search, Starts
 from .measurement.signals import multisine
 from .measurement.z_width import z_width
@@ -25,9 +28,12 @@ __all__ = [
     "Safety",
     "Search",
     "Starts",
+    "compare_qualities",
     "impedance",
     "largest_stiffness",
     "multisine",
+    "quality",
+    "read_quality",
     "z_width",
 ]
 

@@ -22,7 +22,7 @@ def write_profile(profile, path):
     """Write a profile and return the path; what could not be read again is not written."""
     path = Path(path)
     path = path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX)
-    text = _as_text(profile)
+    text = as_text(profile)
     parsed(text, f"the profile {profile.name}")
     path.write_text(text, encoding="utf-8")
     return path
@@ -53,7 +53,7 @@ def read_profile(path):
     return parsed(text, named)
 
 
-def _as_text(profile):
+def as_text(profile):
     estimates = {one.name: one for one in profile.estimates}
     constants = {}
     for name in CONSTANTS:

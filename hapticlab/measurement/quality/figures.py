@@ -1,0 +1,154 @@
+"""The quality of a paddle as pictures: its borders, what it renders beside what a hand can tell apart, and a class of both."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...base.drawing import COLD, WARM, house_style, new_figure, plain_log, style_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.figure import Figure
+
+    from .record import PaddleQuality
+
+#: part of the ideal within which a hand notices nothing: as in ``record``
+BAND = {"facecolor": "0.5", "alpha": 0.25, "linewidth": 0}
+#: paddles that a picture of a class names along their lines
+NAMED = 8
+
+
+def plain(text: str) -> str:
+    """Return a text that matplotlib draws as it is, without formulas."""
+    return text.replace("$", r"\$")
+
+
+def plot_quality(quality: PaddleQuality) -> Figure:
+    """Draw the borders where they were measured, else the impedance."""
+    return plot_widths(quality) if quality.widths or quality.rendered is None else plot_rendered(quality)
+
+
+def plot_widths(quality: PaddleQuality) -> Figure:
+    """Draw both borders over virtual damping, a panel for each velocity, with the range that both allow filled."""
+    shown = quality.widths
+    with house_style():
+        rows = max(1, math.ceil(len(shown) / 2))
+        figure = new_figure(height=1.2 + 2.3 * rows)
+        panels = np.atleast_1d(figure.subplots(rows, 2 if len(shown) > 1 else 1, sharey=True, squeeze=False)).ravel()
+        floor, top = _ends([K for w in shown for K in (*w.rest, *w.quiet, quality.passive)])
+        for axes, width in zip(panels, shown, strict=False):
+            at = np.arange(len(width.B))
+            K, rest, quiet = (np.clip(getattr(width, name), floor, None) for name in ("K", "rest", "quiet"))
+            axes.fill_between(at, floor, K, color="0.9")
+            axes.plot(at, rest, "-", color=WARM, marker="X", label="comes to rest up to here")
+            axes.plot(at, quiet, "--", color=COLD, marker="o", label="no buzz felt up to here")
+            if quality.passive > 0:
+                axes.axhline(quality.passive, color="black", linestyle=":", label="Eq. (23.10), B = 0, any passive hand")
+            axes.set_xticks(at, [f"{b:.3g}" for b in width.B])
+            axes.set_title(plain(width.velocity), fontsize="medium")
+            plain_log(axes, "y", (floor, top))
+            axes.set_ylim(floor, top)
+        for axes in panels[len(shown) :]:
+            axes.set_visible(False)
+        figure.supxlabel("virtual damping B [N s/m]")
+        figure.supylabel("stiffness K [N/m]")
+        if shown:
+            handles, labels = panels[0].get_legend_handles_labels()
+            figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize="small")
+    return figure
+
+
+def _ends(values):
+    """Ends of a logarithmic axis of stiffness, in decades."""
+    seen = [K for K in values if math.isfinite(K) and K > 0]
+    low, high = (min(seen), max(seen)) if seen else (10.0, 1000.0)
+    return 10 ** math.floor(math.log10(0.9 * low)), 10 ** math.ceil(math.log10(1.1 * high))
+
+
+def plot_rendered(quality: PaddleQuality) -> Figure:
+    """Draw magnitude, effective stiffness and damping of a rendered wall, with the band that a hand cannot tell apart."""
+    one, b, (stiffness, damping) = quality.rendered, quality.profile.b, quality.fractions
+    f, magnitude = np.array(one.frequency), np.abs(one.ideal)
+    radius = np.array(one.radius)
+    with house_style():
+        figure = new_figure(height=7.4)
+        size, spring, damper = figure.subplots(3, 1, sharex=True)
+        size.fill_between(f, (1 - stiffness) * magnitude, (1 + stiffness) * magnitude, label=f"within {stiffness:.0%}", **BAND)
+        size.plot(f, magnitude, **style_of(1), label="ideal")
+        size.plot(f, np.abs(one.Z), "o", color="black", markersize=4, label="rendered")
+        size.set(ylabel="|Z| [N s/m]")
+        plain_log(size, "y", (magnitude.min(), magnitude.max()))
+        spring.axhspan((1 - stiffness) * one.K, (1 + stiffness) * one.K, **BAND)
+        spring.axhline(one.K, **style_of(1))
+        spring.errorbar(f, one.stiffness, 2 * np.pi * f * radius, fmt="o", color="black", markersize=4, capsize=2)
+        spring.set(ylabel="stiffness [N/m]", ylim=(min(0.0, 1.2 * one.stiffness.min()), max(1.6 * one.K, 1e-3)))
+        whole = b + one.B
+        damper.axhspan((1 - damping) * whole, (1 + damping) * whole, label=f"within {damping:.0%} of b + B", **BAND)
+        damper.axhline(whole, **style_of(1), label="ideal wall on this paddle, b + B")
+        damper.errorbar(f, b + np.array(one.real), radius, fmt="o", color="black", markersize=4, capsize=2, label="rendered")
+        damper.axhline(0, color="0.5", linewidth=0.8)
+        damper.set(ylabel="damping [N s/m]", xlabel="frequency [Hz]")
+        plain_log(damper, "x", (f.min(), f.max()))
+        size.legend(loc="upper right", fontsize="small")
+        damper.legend(loc="best", fontsize="small")
+    return figure
+
+
+def plot_class(qualities: Sequence[PaddleQuality], numbers: Sequence[int]) -> Figure:
+    """Draw each paddle in a row: what Eq. (23.10) guarantees, the stiffest quiet wall, and where both borders are at B = 0."""
+    with house_style():
+        figure = new_figure(height=1.6 + 0.24 * len(qualities))
+        axes = figure.add_subplot()
+        rows = np.arange(len(qualities))[::-1]
+        plain_spring = [_at_zero(one) for one in qualities]
+        columns = {
+            "Eq. (23.10), any passive hand": ([one.passive for one in qualities], "|", "black"),
+            "comes to rest, B = 0": ([rest for rest, _ in plain_spring], "X", WARM),
+            "no buzz felt, B = 0": ([quiet for _, quiet in plain_spring], "o", COLD),
+            "stiffest quiet wall, any B and velocity": ([one.stiffest[0] for one in qualities], "D", "#7d9e30"),
+        }
+        for label, (K, marker, colour) in columns.items():
+            K = np.array([value if value > 0 else math.nan for value in K])
+            size = 11 if marker == "|" else 6
+            axes.plot(K, rows, linestyle="", marker=marker, color=colour, markersize=size, markeredgewidth=1.4, label=label)
+        names = [f"{number}  {plain(_cut(one.name))}" for number, one in zip(numbers, qualities, strict=True)]
+        axes.set_yticks(rows, names, fontsize="small")
+        axes.set(xlabel="stiffness K [N/m]", ylim=(-0.7, len(qualities) - 0.3))
+        plain_log(axes, "x", _ends([K for K, *_ in columns.values() for K in K]))
+        figure.legend(loc="outside upper center", ncols=2, fontsize="small")
+    return figure
+
+
+def _cut(name):
+    return name if len(name) <= 24 else f"{name[:22]} ..."
+
+
+def _at_zero(one):
+    """Both borders of the plain spring, from the first width that has one."""
+    return next(
+        ((w.rest[k], w.quiet[k]) for w in one.widths for k, B in enumerate(w.B) if B == 0),
+        (math.nan, math.nan),
+    )
+
+
+def plot_overlay(qualities: Sequence[PaddleQuality], numbers: Sequence[int]) -> Figure:
+    """Draw over frequency how far each paddle's rendered wall is from the ideal one, numbered at the end of its line."""
+    shown = [(number, one) for number, one in zip(numbers, qualities, strict=True) if one.rendered is not None]
+    with house_style():
+        figure = new_figure(height=4.4)
+        axes = figure.add_subplot()
+        limit = shown[0][1].fractions[0]
+        for k, (number, one) in enumerate(shown):
+            style = style_of(k) if len(shown) <= NAMED else {"color": "0.35", "linestyle": "-"}
+            f, off = np.array(one.rendered.frequency), 100 * np.minimum(one.rendered.off, 2)
+            axes.plot(f, off, linewidth=1, **style, label=f"{number}  {plain(_cut(one.name))}" if len(shown) <= NAMED else None)
+            axes.annotate(f"{number}", (f[-1], off[-1]), xytext=(3 + 13 * (k % 4), 0), textcoords="offset points", fontsize=7)
+        axes.axhspan(0, 100 * limit, label=f"a hand tells nothing apart: {limit:.0%}", **BAND)
+        axes.set(xlabel="frequency [Hz]", ylabel="|Z/ideal - 1| [%]", ylim=(0, None))
+        plain_log(axes, "x", (min(one.rendered.frequency[0] for _, one in shown), max(o.rendered.frequency[-1] for _, o in shown)))
+        figure.legend(loc="outside lower center", ncols=3, fontsize="small")
+    return figure
