@@ -1,4 +1,4 @@
-"""What labs 09 and 10 do with a real paddle: no cell moves its motor unasked."""
+"""What labs 09, 10 and 14 do with a real paddle: no cell moves its motor unasked."""
 
 import builtins
 import contextlib
@@ -19,7 +19,7 @@ def cells(number):
     return code_of(read(LABS[number].notebook))
 
 
-@pytest.mark.parametrize(("number", "asks"), [("09", 4), ("10", 1)])
+@pytest.mark.parametrize(("number", "asks"), [("09", 4), ("10", 1), ("14", 2)])
 def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeypatch):
     asked, started = [], []
 
@@ -37,7 +37,7 @@ def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeyp
         # the cells that make them are refused
         names |= {"found": SimpleNamespace(profile=lambda: None), "twin": hl.devices.profile("hapkit_rough"), "T": 1e-3}
         for cell in rest:
-            if re.search(r"paddle\.run\(|\((paddle|held)[,)]|= task\.|_choice\(", cell) and "hl.live(" not in cell:
+            if re.search(r"paddle\.run\(|\(\s*(paddle|held)[,)]|= task\.|_choice\(", cell) and "hl.live(" not in cell:
                 with contextlib.suppress(Exception):  # EOFError, and the names that a cell refused does not make
                     exec(cell, names)
     assert started == []

@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 #: part of the ideal within which a hand notices nothing: as in ``record``
 BAND = {"facecolor": "0.5", "alpha": 0.25, "linewidth": 0}
-#: paddles that a picture of a class names along their lines
+#: paddles of which a picture of a class names every line
 NAMED = 8
+#: the largest difference from an ideal impedance that is drawn [%]
+MOST_OFF = 120
 
 
 def plain(text: str) -> str:
@@ -37,13 +39,13 @@ def plot_widths(quality: PaddleQuality) -> Figure:
     shown = quality.widths
     with house_style():
         rows = max(1, math.ceil(len(shown) / 2))
-        figure = new_figure(height=1.2 + 2.3 * rows)
+        figure = new_figure(height=1.0 + 2.7 * rows)
         panels = np.atleast_1d(figure.subplots(rows, 2 if len(shown) > 1 else 1, sharey=True, squeeze=False)).ravel()
         floor, top = _ends([K for w in shown for K in (*w.rest, *w.quiet, quality.passive)])
-        for axes, width in zip(panels, shown, strict=False):
+        for number, (axes, width) in enumerate(zip(panels, shown, strict=False)):
             at = np.arange(len(width.B))
             K, rest, quiet = (np.clip(getattr(width, name), floor, None) for name in ("K", "rest", "quiet"))
-            axes.fill_between(at, floor, K, color="0.9")
+            axes.fill_between(at, floor, K, **BAND)
             axes.plot(at, rest, "-", color=WARM, marker="X", label="comes to rest up to here")
             axes.plot(at, quiet, "--", color=COLD, marker="o", label="no buzz felt up to here")
             if quality.passive > 0:
@@ -52,10 +54,9 @@ def plot_widths(quality: PaddleQuality) -> Figure:
             axes.set_title(plain(width.velocity), fontsize="medium")
             plain_log(axes, "y", (floor, top))
             axes.set_ylim(floor, top)
+            axes.set(xlabel="virtual damping B [N s/m]", ylabel="" if number % 2 else "stiffness K [N/m]")
         for axes in panels[len(shown) :]:
             axes.set_visible(False)
-        figure.supxlabel("virtual damping B [N s/m]")
-        figure.supylabel("stiffness K [N/m]")
         if shown:
             handles, labels = panels[0].get_legend_handles_labels()
             figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize="small")
@@ -74,11 +75,12 @@ def plot_rendered(quality: PaddleQuality) -> Figure:
     one, b, (stiffness, damping) = quality.rendered, quality.profile.b, quality.fractions
     f, magnitude = np.array(one.frequency), np.abs(one.ideal)
     radius = np.array(one.radius)
+    band = f"not told apart by a hand: {100 * stiffness:.0f} %, of damping {100 * damping:.0f} %"
     with house_style():
         figure = new_figure(height=7.4)
         size, spring, damper = figure.subplots(3, 1, sharex=True)
-        size.fill_between(f, (1 - stiffness) * magnitude, (1 + stiffness) * magnitude, label=f"within {stiffness:.0%}", **BAND)
-        size.plot(f, magnitude, **style_of(1), label="ideal")
+        size.fill_between(f, (1 - stiffness) * magnitude, (1 + stiffness) * magnitude, label=band, **BAND)
+        size.plot(f, magnitude, **style_of(1), label="ideal wall, its damping with the paddle's b")
         size.plot(f, np.abs(one.Z), "o", color="black", markersize=4, label="rendered")
         size.set(ylabel="|Z| [N s/m]")
         plain_log(size, "y", (magnitude.min(), magnitude.max()))
@@ -87,40 +89,46 @@ def plot_rendered(quality: PaddleQuality) -> Figure:
         spring.errorbar(f, one.stiffness, 2 * np.pi * f * radius, fmt="o", color="black", markersize=4, capsize=2)
         spring.set(ylabel="stiffness [N/m]", ylim=(min(0.0, 1.2 * one.stiffness.min()), max(1.6 * one.K, 1e-3)))
         whole = b + one.B
-        damper.axhspan((1 - damping) * whole, (1 + damping) * whole, label=f"within {damping:.0%} of b + B", **BAND)
-        damper.axhline(whole, **style_of(1), label="ideal wall on this paddle, b + B")
-        damper.errorbar(f, b + np.array(one.real), radius, fmt="o", color="black", markersize=4, capsize=2, label="rendered")
+        damper.axhspan((1 - damping) * whole, (1 + damping) * whole, **BAND)
+        damper.axhline(whole, **style_of(1))
+        damper.errorbar(f, b + np.array(one.real), radius, fmt="o", color="black", markersize=4, capsize=2)
         damper.axhline(0, color="0.5", linewidth=0.8)
         damper.set(ylabel="damping [N s/m]", xlabel="frequency [Hz]")
         plain_log(damper, "x", (f.min(), f.max()))
-        size.legend(loc="upper right", fontsize="small")
-        damper.legend(loc="best", fontsize="small")
+        figure.legend(loc="outside lower center", ncols=3, fontsize="small")
     return figure
 
 
 def plot_class(qualities: Sequence[PaddleQuality], numbers: Sequence[int]) -> Figure:
-    """Draw each paddle in a row: what Eq. (23.10) guarantees, the stiffest quiet wall, and where both borders are at B = 0."""
+    """Draw each paddle in a row: its borders at the left, and up to which frequency it renders a wall as meant at the right."""
     with house_style():
-        figure = new_figure(height=1.6 + 0.24 * len(qualities))
-        axes = figure.add_subplot()
+        figure = new_figure(height=1.6 + 0.24 * len(qualities), width=8.6)
+        axes, upto = figure.subplots(1, 2, sharey=True, width_ratios=(5, 2))
         rows = np.arange(len(qualities))[::-1]
-        plain_spring = [_at_zero(one) for one in qualities]
+        at_zero = [_at_zero(one) for one in qualities]
         columns = {
             "Eq. (23.10), any passive hand": ([one.passive for one in qualities], "|", "black"),
-            "comes to rest, B = 0": ([rest for rest, _ in plain_spring], "X", WARM),
-            "no buzz felt, B = 0": ([quiet for _, quiet in plain_spring], "o", COLD),
+            "comes to rest, B = 0": ([rest for rest, _ in at_zero], "X", WARM),
+            "no buzz felt, B = 0": ([quiet for _, quiet in at_zero], "o", COLD),
             "stiffest quiet wall, any B and velocity": ([one.stiffest[0] for one in qualities], "D", "#7d9e30"),
         }
         for label, (K, marker, colour) in columns.items():
-            K = np.array([value if value > 0 else math.nan for value in K])
-            size = 11 if marker == "|" else 6
-            axes.plot(K, rows, linestyle="", marker=marker, color=colour, markersize=size, markeredgewidth=1.4, label=label)
+            size = 11 if marker == "|" else 5.5
+            look = {"linestyle": "", "marker": marker, "color": colour, "markersize": size, "markeredgewidth": 1.3}
+            axes.plot(_positive(K), rows, **look, label=label)
+        same = _positive([one.rendered.same_up_to if one.rendered else math.nan for one in qualities])
+        upto.plot(same, rows, linestyle="", marker="s", color="black", markersize=5)
         names = [f"{number}  {plain(_cut(one.name))}" for number, one in zip(numbers, qualities, strict=True)]
         axes.set_yticks(rows, names, fontsize="small")
         axes.set(xlabel="stiffness K [N/m]", ylim=(-0.7, len(qualities) - 0.3))
-        plain_log(axes, "x", _ends([K for K, *_ in columns.values() for K in K]))
+        upto.set(xlabel="same up to [Hz]", xlim=(0, 1.15 * np.nanmax([*same, 1.0])))
+        plain_log(axes, "x", _ends([value for K, *_ in columns.values() for value in K]))
         figure.legend(loc="outside upper center", ncols=2, fontsize="small")
     return figure
+
+
+def _positive(values):
+    return np.array([value if value > 0 else math.nan for value in values])
 
 
 def _cut(name):
@@ -129,26 +137,31 @@ def _cut(name):
 
 def _at_zero(one):
     """Both borders of the plain spring, from the first width that has one."""
-    return next(
-        ((w.rest[k], w.quiet[k]) for w in one.widths for k, B in enumerate(w.B) if B == 0),
-        (math.nan, math.nan),
-    )
+    found = ((w.rest[k], w.quiet[k]) for w in one.widths for k, B in enumerate(w.B) if B == 0)
+    return next(found, (math.nan, math.nan))
 
 
 def plot_overlay(qualities: Sequence[PaddleQuality], numbers: Sequence[int]) -> Figure:
-    """Draw over frequency how far each paddle's rendered wall is from the ideal one, numbered at the end of its line."""
+    """Draw over frequency how far each paddle's rendered wall is from the ideal one; of many, name the best and the worst."""
     shown = [(number, one) for number, one in zip(numbers, qualities, strict=True) if one.rendered is not None]
+    order = sorted(shown, key=lambda pair: -pair[1].rendered.same_up_to)
+    named = order if len(shown) <= NAMED else [order[0], order[-1]]
     with house_style():
-        figure = new_figure(height=4.4)
+        figure = new_figure(height=4.6)
         axes = figure.add_subplot()
         limit = shown[0][1].fractions[0]
-        for k, (number, one) in enumerate(shown):
-            style = style_of(k) if len(shown) <= NAMED else {"color": "0.35", "linestyle": "-"}
-            f, off = np.array(one.rendered.frequency), 100 * np.minimum(one.rendered.off, 2)
-            axes.plot(f, off, linewidth=1, **style, label=f"{number}  {plain(_cut(one.name))}" if len(shown) <= NAMED else None)
-            axes.annotate(f"{number}", (f[-1], off[-1]), xytext=(3 + 13 * (k % 4), 0), textcoords="offset points", fontsize=7)
-        axes.axhspan(0, 100 * limit, label=f"a hand tells nothing apart: {limit:.0%}", **BAND)
-        axes.set(xlabel="frequency [Hz]", ylabel="|Z/ideal - 1| [%]", ylim=(0, None))
-        plain_log(axes, "x", (min(one.rendered.frequency[0] for _, one in shown), max(o.rendered.frequency[-1] for _, o in shown)))
+        for number, one in order:
+            if (number, one) not in named:
+                axes.plot(*_course(one), color="0.6", linewidth=0.8)
+        for k, (number, one) in enumerate(named):
+            axes.plot(*_course(one), **style_of(k), linewidth=1.8, label=f"{number}  {plain(_cut(one.name))}")
+        axes.axhspan(0, 100 * limit, label=f"not told apart by a hand, {100 * limit:.0f} %", **BAND)
+        axes.set(xlabel="frequency [Hz]", ylabel="|Z/ideal - 1| [%]", ylim=(0, MOST_OFF))
+        ends = [frequency for _, one in shown for frequency in one.rendered.frequency]
+        plain_log(axes, "x", (min(ends), max(ends)))
         figure.legend(loc="outside lower center", ncols=3, fontsize="small")
     return figure
+
+
+def _course(one):
+    return np.array(one.rendered.frequency), 100 * one.rendered.off

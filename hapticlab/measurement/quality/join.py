@@ -150,10 +150,11 @@ def read_quality(path: File) -> PaddleQuality:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.measure.read_quality("nothing.json")
-    Traceback (most recent call last):
-    ...
-    hapticlab.errors.AnalysisError: nothing.json: the file cannot be read (No such file or directory). Give a file that quality.save() wrote.
+    >>> try:
+    ...     hl.measure.read_quality("nothing.json")
+    ... except hl.errors.AnalysisError as problem:
+    ...     print(str(problem).partition(". ")[2])
+    Give a file that quality.save() wrote.
     """
     held, named = loaded(path), Path(path).name
     texts = {name: text_of(held[name], name, named) for name in TEXTS}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.facts import short
 from ...base.profile.paddle_profile import PaddleProfile
 from ...base.shows_itself import ShowsItself
 from ...device.device import total_delay
@@ -206,28 +207,34 @@ class PaddleQuality(ShowsItself):
 
     def lines(self) -> list[str]:
         """What was found, in sentences."""
-        told = [f"Eq. (23.10) guarantees walls up to {self.passive:.3g} N/m in every passive hand."]
+        told = [f"Eq. (23.10) guarantees walls up to {_short(self.passive)} N/m in every passive hand."]
         if math.isfinite(self.one_count):
-            told.append(f"Without friction, one encoder count buzzes by {FELT:g} N at {self.one_count:.3g} N/m.")
+            told.append(f"Without friction, one encoder count buzzes by {FELT:g} N at {_short(self.one_count)} N/m.")
         K, B, velocity = self.stiffest
         if K > 0:
             told.append(
-                f"The stiffest wall that came to rest without a buzz has {K:.3g} N/m, with B = {B:.3g} N s/m from the {velocity}."
+                f"The stiffest wall that came to rest without a felt buzz has {_short(K)} N/m, with B = {B:.3g} N s/m by the "
+                f"{velocity}."
             )
         if self.rendered is not None:
             told.append(self._same())
         told.append(
-            f"A hand that judges damping alone may notice walls above {self.same_damping:.3g} N/m, because they take away "
-            f"{DAMPING:.0%} of the paddle's own damping."
+            f"A hand that judges damping alone may tell walls above {_short(self.same_damping)} N/m from ideal ones, because "
+            f"they take away more than {100 * DAMPING:.0f} % of the paddle's own damping."
         )
         return told
 
     def _same(self):
         one = self.rendered
-        wall = f"A wall of {one.K:.3g} N/m" + (f" and {one.B:.3g} N s/m" if one.B > 5e-4 else "")
+        wall = f"A wall of {_short(one.K)} N/m" + (f" and {one.B:.3g} N s/m" if one.B > 5e-4 else "")
         if not one.same_up_to:
-            return f"{wall} differs by more than {STIFFNESS:.0%} from the ideal at every frequency that was measured."
-        return f"{wall} is rendered within {STIFFNESS:.0%} of the ideal up to {one.same_up_to:.3g} Hz."
+            return f"{wall} differs by more than {100 * STIFFNESS:.0f} % from the ideal at every frequency that was measured."
+        return f"{wall} is rendered within {100 * STIFFNESS:.0f} % of the ideal up to {one.same_up_to:.3g} Hz."
 
     def __str__(self) -> str:
         return "\n".join([f"{self.name}, {self.date}, {self.on}, held by {self.held}", *(f"  {line}" for line in self.lines())])
+
+
+def _short(value):
+    """Three digits, without a power of ten."""
+    return short(float(f"{value:.3g}"))
