@@ -1,4 +1,4 @@
-"""Design for one paddle: couplers, admittance control, damping compensation, gains, and laws compared.
+"""Design for one paddle: couplers, admittance control, damping compensation, gains, laws and whole designs compared.
 
 The stiffest virtual coupler that stays stable with every passive hand and environment:
 
@@ -7,9 +7,15 @@ The stiffest virtual coupler that stays stable with every passive hand and envir
 >>> round(hl.design.coupler(paddle, b_c=0.05).k_c)      # 2 (b - b_c)/T
 300
 
-Next: ``hl.design.compare_laws`` runs several laws on the same entries, ``hl.design.law_limits`` finds the limit of each.
+Next: ``hl.design.compare_laws`` runs several laws on the same entries, ``hl.design.law_limits`` finds the limit of each, and
+``hl.design.measured`` measures error, load and passivity margin of a design under a budget.
 """
 
+from .analysis.budget.front import DesignFront, front
+from .analysis.budget.measured import MeasuredDesign, measured
+from .analysis.budget.task import TEXTBOOK as textbook
+from .analysis.budget.task import Task
+from .analysis.budget.tasks import task
 from .analysis.walls.compare_laws import compare_laws
 from .analysis.walls.law_limits import law_limits
 from .limits.admittance import admittance_design as admittance
@@ -24,15 +30,22 @@ from .vocabulary import page
 
 __all__ = [
     "CompensationLimit",
+    "DesignFront",
+    "MeasuredDesign",
     "Rendering",
+    "Task",
     "admittance",
     "compare_laws",
     "compensation",
     "coupler",
     "deadbeat_gains",
     "digital_gains",
+    "front",
     "law_limits",
+    "measured",
     "over_compensation",
+    "task",
+    "textbook",
 ]
 
 page(__name__)
