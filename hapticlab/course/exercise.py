@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 #: what is judged, and what is only noted
-Judged = Literal["function", "scene", "expression", "plot", "value", "choice"]
+Judged = Literal["function", "scene", "expression", "plot", "value", "choice", "design"]
 Noted = Literal["prediction", "text"]
 Kind = Judged | Noted
 JUDGED, NOTED = get_args(Judged), get_args(Noted)
@@ -29,14 +29,15 @@ class Case:
         The arguments of a function, by name (lists become NumPy arrays); what a scene is run with, see
         :func:`hapticlab.course.felt.felt`; the points of an expression, ``at``, with what an equation is solved for,
         ``solve_for``, see :func:`hapticlab.course.expression.values`, and optionally its ``unit``; empty for a value or a
-        choice.
+        choice; the task of a design and its constants, ``{"task": "wall", "K": 500.0}``.
     expected : float, bool, str, sequence of float (nested for more axes), or dict of str to these
-        Of an expression a number for each point; of a plot its curves, see :func:`hapticlab.course.plotted_curves.curves`.
+        Of an expression a number for each point; of a plot its curves, see :func:`hapticlab.course.plotted_curves.curves`;
+        of a design the reference points, ``{"A": [error in %, load in %, margin in N s/m]}``.
     unit : str
         Of what is expected.
     slips : dict or sequence of (wrong, sentence)
         A typical wrong result and the sentence that teaches: a number, a tuple shaped as what is expected, or a dict of
-        the parts that are wrong.
+        the parts that are wrong; of a design a dict of names that it gives so.
 
     Examples
     --------
@@ -63,10 +64,10 @@ class Exercise:
     Parameters
     ----------
     name : str
-    kind : {"function", "scene", "expression", "plot", "value", "choice", "prediction", "text"}
+    kind : {"function", "scene", "expression", "plot", "value", "choice", "design", "prediction", "text"}
         The last two are noted and never judged. A plot is a matplotlib Figure or Axes, or a function that makes one.
     points : float
-        Earned where every case is right, else none.
+        Earned where every case is right, else none; of a design a part for each reference point, see ``full``.
     asks : str
         What is asked for, in a few words with units.
     cases : sequence of Case
@@ -81,6 +82,9 @@ class Exercise:
         Of a text.
     matters : str
         Printed where every case is right: why the result matters, in a sentence that holds for any numbers.
+    full : int
+        Of a design: how many reference points of each scene it must dominate to earn all points; see
+        :func:`hapticlab.course.design_answer.share`.
 
     Examples
     --------
@@ -99,6 +103,7 @@ class Exercise:
     hint: str = ""
     least_words: int = 0
     matters: str = ""
+    full: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cases", tuple(self.cases))
@@ -108,6 +113,11 @@ class Exercise:
             raise CourseError(f"exercise {self.name!r}: needs the name of a Python variable, such as 'wall_force'")
         if not self.judged and (self.points or self.cases):
             raise CourseError(f"{self.name}: a {self.kind} is saved, not marked; leave out points and cases")
+        if (self.kind == "design") != (self.full > 0):
+            raise CourseError(f"{self.name}: full = {self.full}; a design needs full >= 1, and no other kind has it")
+        few = next((len(c.expected) for c in self.cases if self.kind == "design" and len(c.expected) < self.full), None)
+        if few is not None:
+            raise CourseError(f"{self.name}: full = {self.full}, but a case has only {few} reference points")
         strange = [c.expected for c in self.cases if self.kind == "choice" and c.expected not in self.options]
         if strange:
             raise CourseError(f"{self.name}: {strange[0]!r} is not one of the options {', '.join(self.options)}")

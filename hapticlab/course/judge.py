@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import design_answer
 from .diagnose import EXACT, NEAR, known, slip
 from .match import plot_fault
 
@@ -20,12 +21,14 @@ class Verdict:
     """Whether one case is right, and the words for it: what differs, and the sentence that teaches.
 
     ``slip`` is that sentence alone, where a known mistake is recognised; it is a part of ``words``. It is always one of the
-    package's or of a case: no word of it comes from where the answer was evaluated.
+    package's or of a case: no word of it comes from where the answer was evaluated. ``share`` is the part of the points that
+    the case allows, less than 1 where a design dominates some reference points but not enough.
     """
 
     right: bool
     words: str
     slip: str = ""
+    share: float = 0.0
 
 
 def judge(exercise: Exercise, case: Case, value: Any) -> Verdict:
@@ -52,6 +55,8 @@ def judge(exercise: Exercise, case: Case, value: Any) -> Verdict:
     Verdict(right=False, words='-2.25 N, expected 2.25 N. The sign is wrong.', slip='The sign is wrong.')
     """
     expected, hidden = case.expected, exercise.kind in ("value", "choice")
+    if exercise.kind == "design":
+        return _judge_design(exercise, case, value)
     if exercise.kind == "plot":
         return _judge_plot(exercise, case, value)
     if isinstance(expected, str | bool):
@@ -70,6 +75,14 @@ def judge(exercise: Exercise, case: Case, value: Any) -> Verdict:
         return Verdict(True, f"{got.size} points" if exercise.kind == "expression" else _value(got, case.unit))
     words = _difference(exercise, case, wanted, got, hidden)
     return _taught(words, slip(exercise, case, wanted, got))
+
+
+def _judge_design(exercise, case, value):
+    """Judge a design: right where it dominates enough reference points of the scene."""
+    part, words = design_answer.share(exercise, case, value), design_answer.words(exercise, case, value)
+    if part >= 1:
+        return Verdict(True, words, share=1.0)
+    return replace(_taught(words, design_answer.slip(case, value)), share=part)
 
 
 def _taught(words, sentence):

@@ -22,6 +22,7 @@ import numpy as np
 
 from ..errors import CourseError
 from .constants import with_constants
+from .design_answer import points_of
 from .evaluate import evaluate
 from .exercise import Case
 from .judge import judge, verdict
@@ -30,17 +31,22 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from .exercise import Exercise, Lab
+    from .judge import Verdict
 
 SOLUTION, HIDDEN = "solution.py", "hidden.py"
 #: beside them, what tests a lab's sentences: wrong answers, and statements about every paddle; no grader reads these
 WRONG, CLAIMS = "wrong.py", "claims.py"
+#: kinds whose answer is data and no code: it cannot depend on what a case gives
+DATA = ("value", "choice", "design")
+#: of a design NAME, the solution's reference designs are NAME_points
+POINTS = "_points"
 #: what a student's own numbers are drawn by: no exercise can have this name
 NUMBERS = "numbers()"
 
 
 @dataclass(frozen=True)
 class Mark:
-    """What one exercise earned: its points where every case is right, else none."""
+    """What one exercise earned: its points where every case is right, else none; of a design a part of them."""
 
     exercise: str
     points: float
@@ -83,7 +89,8 @@ def marks(lab: Lab, answers: Mapping[str, Any], hidden: Mapping[str, Sequence[Ca
 def counted_cases(exercise: Exercise, hidden: Mapping[str, Sequence[Case]] | None = None) -> tuple[tuple[Case, bool], ...]:
     """Return the cases that an exercise is marked by, each with whether it is public.
 
-    Where there are hidden cases of a value or a choice, the public one, whose answer a class can pass on, does not count.
+    Where there are hidden cases of a value, a choice or a design, the public one, whose answer a class can pass on, does not
+    count.
 
     Examples
     --------
@@ -93,14 +100,29 @@ def counted_cases(exercise: Exercise, hidden: Mapping[str, Sequence[Case]] | Non
     [(143.0, False)]
     """
     own = tuple((case, False) for case in (hidden or {}).get(exercise.name, ()))
-    return own if own and exercise.kind in ("value", "choice") else (*((case, True) for case in exercise.cases), *own)
+    return own if own and exercise.kind in DATA else (*((case, True) for case in exercise.cases), *own)
 
 
 def _mark(exercise, answer, cases):
     verdicts = [verdict(exercise, case, evaluate(exercise.kind, answer, case.given)) for case, _ in cases]
     wrong = [v.words for v in verdicts if not v.right]
-    earned = exercise.points if verdicts and not wrong else 0
+    earned = earned_points(exercise, verdicts)
     return Mark(exercise.name, exercise.points, earned, len(verdicts) - len(wrong), len(verdicts), "".join(wrong[:1]))
+
+
+def earned_points(exercise: Exercise, verdicts: Sequence[Verdict]) -> float:
+    """Return the points of verdicts on all cases: all where each is right, else none; of a design the least share of any.
+
+    Examples
+    --------
+    >>> from hapticlab.course.exercise import Exercise
+    >>> from hapticlab.course.judge import Verdict
+    >>> earned_points(Exercise("wall", "design", points=2, full=4), [Verdict(True, "", share=1.0), Verdict(False, "", share=0.5)])
+    1.0
+    """
+    if verdicts and all(one.right for one in verdicts):
+        return exercise.points
+    return exercise.points * min((one.share for one in verdicts), default=0.0) if exercise.kind == "design" else 0
 
 
 def hidden_cases(lab, folder, seed=0, student="", personal=False):
@@ -210,6 +232,8 @@ def _solution(folder, numbers):
 
 def _case(exercise, answers, given):
     """Return a case whose expected value the solution gives."""
+    if exercise.kind == "design":
+        return _design_case(exercise, answers, given)
     outcome = evaluate(exercise.kind, answers.get(exercise.name), given)
     if not outcome.answered or outcome.problem:
         raise CourseError(f"{exercise.name}: the solution gives no value for {given}: {outcome.problem or 'it has no answer'}")
@@ -218,6 +242,20 @@ def _case(exercise, answers, given):
         return asked[0]
     unit = exercise.cases[0].unit if exercise.cases else ""
     return Case(given, outcome.value, unit=unit)
+
+
+def _design_case(exercise, answers, given):
+    """Return a case with the reference points that the solution's reference designs make on a scene."""
+    designs = answers.get(exercise.name + POINTS)
+    if not isinstance(designs, dict):
+        raise CourseError(f"{exercise.name}: {SOLUTION} needs {exercise.name}{POINTS}, reference designs by their names")
+    points = points_of(given, designs)
+    if len(points) < exercise.full:
+        raise CourseError(
+            f"{exercise.name}: only {len(points)} reference designs are feasible for {given}; needs {exercise.full}"
+        )
+    slips = exercise.cases[0].slips if exercise.cases else ()
+    return Case(given, points, slips=slips)
 
 
 def instructor_names(path):

@@ -219,8 +219,10 @@ class _Work:
         """Return the kind, and the givens of the cases that are shown, or hidden, or both."""
         if not exercise.judged:
             return "value", [{}] * (True in shown)
-        cases = self.cases[exercise.name]
-        return exercise.kind, [dict(case.given) for case, public in cases if (public or exercise.kind in SHOWN) in shown]
+        cases = [case for case, public in self.cases[exercise.name] if (public or exercise.kind in SHOWN) in shown]
+        if exercise.kind == "design":  # one answer to all scenes, which are measured in this process
+            return exercise.kind, [{}] * len(cases)
+        return exercise.kind, [dict(case.given) for case in cases]
 
     def _answers(self, asks, prepare):
         """Ask for answers in sessions that are prepared alike, a new one after each end; return why the last one ended."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from ..course import design_answer
 from ..course.judge import Verdict, verdict
+from ..course.marks import DATA, earned_points
 from .handed_in.replies import line_of, rounded, text_of
 from .report import ExerciseReport, Failing
 
@@ -15,8 +17,8 @@ if TYPE_CHECKING:
 
 #: characters kept of the sentence on a wrong case
 WORDS = 600
-#: kinds whose cases have no givens that could be told
-SHOWN = ("value", "choice")
+#: kinds whose answer is not told what a case gives
+SHOWN = DATA
 
 
 @dataclass(frozen=True)
@@ -84,10 +86,11 @@ def exercise_report(exercise, cases, found, limits, slips=None):
         return ExerciseReport(**about, **_noted(exercise, found.outcomes))
     verdicts = [_verdict(exercise, case, outcome) for (case, _), outcome in zip(cases, found.outcomes, strict=False)]
     right = sum(one.right for one in verdicts)
-    if verdicts and right == len(cases):
-        wrong = {"earned": float(exercise.points)}
-    else:
-        wrong = _wrong(exercise, cases, found.outcomes, verdicts, slips)
+    wrong = {"earned": float(earned_points(exercise, verdicts) if len(verdicts) == len(cases) else 0)}
+    if not verdicts or right < len(cases):
+        wrong |= _wrong(exercise, cases, found.outcomes, verdicts, slips)
+    if exercise.kind == "design" and found.outcomes and isinstance(found.outcomes[0].value, dict):
+        wrong["designs"] = _designs(exercise, cases, found.outcomes[0].value)
     return ExerciseReport(
         **about,
         answered=any(outcome.answered for outcome in found.outcomes),
@@ -116,6 +119,12 @@ def _wrong(exercise, cases, outcomes, verdicts, slips):
     expected = None if exercise.kind in SHOWN else rounded(case.expected)
     failing = Failing(rounded(dict(case.given)), rounded(outcome.value), expected, case.unit, public)
     return {"words": line_of(said.words, WORDS), "slip": line_of(said.slip, WORDS), "hint": exercise.hint, "failing": failing}
+
+
+def _designs(exercise, cases, answer):
+    """Return what a design was measured to do on each scene: the public ones, which all of a class share, and its own."""
+    scenes = [(case, True) for case in exercise.cases] + [(case, public) for case, public in cases if not public]
+    return tuple({**design_answer.row(case, answer), "public": public} for case, public in scenes)
 
 
 def _noted(exercise, outcomes):

@@ -24,7 +24,7 @@ class Failing:
 
 @dataclass(frozen=True)
 class ExerciseReport:
-    """One exercise: its points where every case is right, else none.
+    """One exercise: its points where every case is right, else none; of a design a part of them.
 
     Attributes
     ----------
@@ -48,6 +48,9 @@ class ExerciseReport:
         What its code printed in public cases.
     text : str
         Of a prediction or a discussion, which are noted and carry no points: what was written.
+    designs : tuple of dict
+        Of a design, for each scene: ``scene``, ``public``, ``figures`` (error [%], load [%], margin [N s/m]) or ``why`` it is
+        not feasible, the reference ``points``, and the names of those that it ``dominates``.
     """
 
     name: str
@@ -66,6 +69,7 @@ class ExerciseReport:
     failing: Failing | None = None
     printed: str = ""
     text: str = ""
+    designs: tuple[dict[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -128,7 +132,13 @@ class Report:
         """
         held = json.loads(line)
         exercises = tuple(
-            ExerciseReport(**{**one, "failing": Failing(**one["failing"]) if one["failing"] else None})
+            ExerciseReport(
+                **{
+                    **one,
+                    "failing": Failing(**one["failing"]) if one["failing"] else None,
+                    "designs": tuple(one.get("designs", ())),
+                }
+            )
             for one in held.pop("exercises")
         )
         return cls(**{**held, "exercises": exercises, "cells": tuple((cell, words) for cell, words in held["cells"])})

@@ -103,7 +103,7 @@ def _number(name, value):
         if not SHORTEST - 1e-12 <= number <= LONGEST + 1e-12 or abs(whole * PERIOD_STEP - number) > 1e-9:
             raise NoDesign(
                 f"T = {number:g} s; it needs a whole number of {1e3 * PERIOD_STEP:g} ms from {1e3 * SHORTEST:g} to "
-                f"{1e3 * LONGEST:g} ms"
+                f"{1e3 * LONGEST:g} ms, in seconds: 1 ms is 0.001"
             )
         return whole * PERIOD_STEP
     return number

@@ -3,7 +3,10 @@
 from ...base.drawing import COLD, WARM, house_style, new_figure, plain_log
 
 #: of each panel: the place among (error, load, margin), and the label of its axis
-PANELS = ((0, "error at the handle [%]", "below and to the left is better"), (2, "passivity margin [N s/m]", "above and to the left is better"))
+PANELS = (
+    (0, "error at the handle [%]", "below and to the left is better"),
+    (2, "passivity margin [N s/m]", "above and to the left is better"),
+)
 
 
 def plot_front(found):

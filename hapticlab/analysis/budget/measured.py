@@ -17,12 +17,12 @@ from ...compiler.tick.compile_scene import compile
 from ...errors import HapticlabError
 from ..accuracy.port_error import WILD, compared
 from ..accuracy.tradeoff_trials import Setting
-from .design import Design, NoDesign, design_of
+from .design import NoDesign, design_of
 
 if TYPE_CHECKING:
     from .task import Task
 
-#: significant digits of the figures: far more than a hand notices, far fewer than a platform changes
+#: digits of error and load, and decimals of the margin: more than a hand notices, far fewer than a platform changes
 DIGITS = 3
 #: ticks for each sample of telemetry, part of the load
 EVERY = 10
@@ -70,7 +70,8 @@ class MeasuredDesign(ShowsItself):
     def dominates(self, other: MeasuredDesign) -> bool:
         """Whether no figure is worse than the other's, and one is better."""
         mine, others = ((one.error, one.load, -one.margin) for one in (self, other))
-        return self.feasible and (not other.feasible or (mine != others and all(a <= b for a, b in zip(mine, others, strict=True))))
+        no_worse = mine != others and all(a <= b for a, b in zip(mine, others, strict=True))
+        return self.feasible and (not other.feasible or no_worse)
 
     def __str__(self) -> str:
         if self.why:
@@ -84,8 +85,8 @@ class MeasuredDesign(ShowsItself):
 def measured(task: Task, design: Mapping[str, Any]) -> MeasuredDesign:
     """Measure one design of a task: error at the handle, load of the board, passivity margin.
 
-    The program runs on the positions that the encoder counts during the task's motion, as on the board, in float32. All
-    figures are rounded to 3 digits; two platforms differ by one unit of the last digit at most.
+    The program runs on the positions that the encoder counts during the task's motion, as on the board, in float32. Error
+    and load are rounded to 3 digits and the margin to 0.001 N s/m; two platforms may differ by one unit of the last digit.
 
     Parameters
     ----------
@@ -122,7 +123,8 @@ def _measured(task, chosen, given):
         return MeasuredDesign(design, why=" ".join(str(problem).split())[:REASON])
     if why:
         return MeasuredDesign(design, why=why)
-    return MeasuredDesign(design, *(float(f"{one:.{DIGITS}g}") for one in (100 * error, 100 * floor, 100 * taken, margin)))
+    parts = (float(f"{100 * one:.{DIGITS}g}") for one in (error, floor, taken))
+    return MeasuredDesign(design, *parts, round(margin, DIGITS) + 0.0)  # no sign on a zero
 
 
 def _figures(task, design):
@@ -136,13 +138,15 @@ def _figures(task, design):
     setting = Setting(design.method, design.T, design.substeps, design.hold, "before", "float32")
     ratio, _ = limits.steps(setting)
     if ratio is not None and ratio < 1:
-        longest = 1e3 * ratio * design.T / design.substeps
-        return *nothing, f"it is unstable: {design.method} is stable up to a step of {longest:.3g} ms, here it is {1e3 * design.T / design.substeps:.3g} ms"
+        step = 1e3 * design.T / design.substeps
+        stable = f"{design.method} is stable up to a step of {ratio * step:.3g} ms"
+        return *nothing, f"it is unstable: {stable}, and this step is {step:.3g} ms"
     loaded = load(program)
     true, seen = (_forces(task, loaded, program, positions) for positions in task.positions(design.T))
     found = compared(seen, task.reference, design.T, task.paddle.delay)
     if not math.isnan(found.unstable_at) or not np.isfinite(true).all():
-        return *nothing, f"it is unstable: its force exceeds {WILD} times the greatest ideal force at t = {found.unstable_at:.3g} s"
+        wild = f"its force exceeds {WILD} times the greatest ideal force at t = {found.unstable_at:.3g} s"
+        return *nothing, f"it is unstable: {wild}"
     required, _ = limits.damping(setting, program)
     if required is None or not math.isfinite(required):
         return *nothing, "it is not passive with any damping of the paddle"

@@ -91,4 +91,5 @@ class Task(ShowsItself):
 
     def __str__(self) -> str:
         given = ", ".join(self.takes)
-        return f"{self.name}, moved by {self.motion.name}, on {self.board} and the paddle {self.paddle.name}; a design gives {given}"
+        kit = f"{self.board} and the paddle {self.paddle.name}"
+        return f"{self.name}, moved by {self.motion.name}, on {kit}; a design gives {given}"

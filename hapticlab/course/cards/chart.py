@@ -38,7 +38,7 @@ def chart(lines, labels, alt):
     """
     lines = {name: tuple(map(bounded, line)) for name, line in lines.items()}
     across, up = (_span(several) for several in zip(*lines.values(), strict=True))
-    marks = _ticks(*up)
+    marks = axis_ticks(*up)
     left = 34 + 7.5 * max((len(text) for _, text in marks), default=1)
 
     def place(many, axis):
@@ -46,7 +46,7 @@ def chart(lines, labels, alt):
         return begin + (many - low) / (high - low) * (end - begin)
 
     grid = [_up_tick(place(tick, 1), text, left) for tick, text in marks]
-    grid += [_across_tick(place(tick, 0), text) for tick, text in _ticks(*across, most=8, whole=labels[0] in (SAMPLE, POINT))]
+    grid += [_across_tick(place(tick, 0), text) for tick, text in axis_ticks(*across, most=8, whole=labels[0] in (SAMPLE, POINT))]
     grid.append(
         f'<text x="{(left + WIDTH) / 2:.0f}" y="{HEIGHT - 8}" text-anchor="middle">{clean(labels[0], 60)}</text>'
         f'<text x="14" y="{(ABOVE + HEIGHT - BELOW) / 2:.0f}" text-anchor="middle" '
@@ -81,7 +81,7 @@ def _span(several):
     return low - room, high + room
 
 
-def _ticks(low, high, most=5, whole=False):
+def axis_ticks(low, high, most=5, whole=False):
     """Places of 1, 2 or 5 times a power of ten with their texts; ``whole`` ones count samples."""
     rough = max((high - low) / most, float(whole))
     tens = 10.0 ** math.floor(math.log10(rough))

@@ -14,12 +14,15 @@ def state(verdicts):
     right, cases = sum(v.right for v in verdicts), len(verdicts)
     if right == cases:
         return "right", "right in the public cases"
-    return ("partly", f"partly right, not right yet: {right} of {cases} public cases") if right else ("wrong", "not right yet")
+    if right:
+        return "partly", f"partly right, not right yet: {right} of {cases} public cases"
+    part = min((v.share for v in verdicts), default=0)
+    return ("partly", f"{part:.0%} of the points in the public cases") if part else ("wrong", "not right yet")
 
 
 def drawn(exercise, outcomes, verdicts):
     """Return figures of the first wrong case that has lists or curves: what came beside what was expected, where that is told."""
-    if exercise.kind in ("value", "choice"):
+    if exercise.kind in ("value", "choice", "design"):
         return ()
     for case, outcome, found in zip(exercise.cases, outcomes, verdicts, strict=True):
         if not found.right and outcome.value is not None:

@@ -64,11 +64,13 @@ def judged(report: Report) -> list[ExerciseReport]:
 
 
 def state(one: ExerciseReport) -> str:
-    """Return whether an exercise is right, in a word or two."""
+    """Return whether an exercise is right, in a word or two; a design that earned a part of its points is "partly"."""
     if not one.points:
         return "noted" if one.answered else "no answer"
     if one.earned >= one.points:
         return "right"
+    if one.earned > 0:
+        return "partly"
     return "wrong" if one.answered else "no answer"
 
 
@@ -82,7 +84,9 @@ def for_student(one: ExerciseReport) -> str:
         return f"Right: {one.cases} of {one.cases} cases."
     said = clean(one.words)
     hidden = one.ended_hidden if one.ended else one.failing is not None and not one.failing.public
-    if hidden and one.kind not in ("value", "choice"):
+    if hidden and one.kind == "design":
+        said = "On a scene that is not shown, the design dominates too few reference points, or is not feasible."
+    elif hidden and one.kind not in ("value", "choice"):
         slip = "" if WORKED_OUT.search(one.slip) else clean(one.slip)
         said = f"A case that is not shown is wrong. {slip}".strip()
     hint = f"\nHint: {clean(one.hint)}" if one.hint else ""

@@ -6,9 +6,16 @@ from statistics import mean, median
 
 from ...course.exercise import NOTED
 from ..formats.words import judged, state
+from .fronts import class_fronts
 
 #: how an exercise went -> the word beside its sign, in the order of tables and bars
-WORDS = {"right": "right", "wrong": "wrong", "no answer": "no answer", "cell failed": "no answer, and a cell failed"}
+WORDS = {
+    "right": "right",
+    "partly": "a part of the points",
+    "wrong": "wrong",
+    "no answer": "no answer",
+    "cell failed": "no answer, and a cell failed",
+}
 #: what a cell raises that uses an answer as the notebook came: a function's body, or None
 OPEN = re.compile("^NotImplementedError|'NoneType'")
 
@@ -33,6 +40,8 @@ def class_facts(pages):
         "stopped": [(address, report, one) for address, report in graded for one in report.exercises if one.ended],
         "written": _written(graded),
         "names": list(dict.fromkeys(one.name for _, report in pages for one in judged(report))),
+        "ways": ways(graded),
+        "fronts": class_fronts([report for _, report in graded]),
         "students": [(address, report, {one.name: went(one, report) for one in judged(report)}) for address, report in pages],
     }
     return facts | _marks(graded) | _exercises(graded) | _mistakes(graded) if graded else facts
@@ -58,16 +67,22 @@ def _marks(graded):
 
 def _exercises(graded):
     """How often each exercise went which way, and the hardest ones."""
-    rows = {}
+    rows, all_ways = {}, ways(graded)
     for _, report in graded:
         for one in judged(report):
-            rows.setdefault(one.name, dict.fromkeys(WORDS, 0))[went(one, report)] += 1
+            rows.setdefault(one.name, dict.fromkeys(all_ways, 0))[went(one, report)] += 1
     part = {name: counts["right"] / sum(counts.values()) for name, counts in rows.items()}
     names = [name for name in rows if part[name] == min(part.values())]
     hardest = {"names": names, "right": rows[names[0]]["right"], "whole": sum(rows[names[0]].values())} if rows else {}
     told = "; ".join(f"{name}: {', '.join(f'{n} {WORDS[word]}' for word, n in counts.items())}" for name, counts in rows.items())
     asked = {one.name: one for _, report in graded for one in judged(report)}
     return {"questions": asked, "exercises": rows, "hardest": hardest, "exercises_told": told}
+
+
+def ways(graded):
+    """Return how exercises can go, with words: only a design can earn a part of its points."""
+    parts = any(one.kind == "design" for _, report in graded for one in report.exercises)
+    return {way: words for way, words in WORDS.items() if parts or way != "partly"}
 
 
 def _written(graded):
@@ -95,9 +110,9 @@ def _mistakes(graded):
     for address, report in graded:
         for one in judged(report):
             order += [one.name] if one.name not in order else []
-            if state(one) == "wrong" and one.slip:
+            if state(one) in ("wrong", "partly") and one.slip:
                 found.setdefault((one.name, one.slip), []).append((address, report))
-            elif state(one) == "wrong" and not one.ended:
+            elif state(one) == "wrong" and not one.ended and one.kind != "design":
                 unknown[one.name] += 1
     ranked = sorted(found.items(), key=lambda item: (-len(item[1]), order.index(item[0][0]), item[0][1]))
     return {"mistakes": ranked, "unknown": {name: unknown[name] for name in order if unknown[name]}}

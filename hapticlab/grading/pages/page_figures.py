@@ -31,11 +31,11 @@ def bars(counts, label, alt):
 
 
 #: part of a bar -> how it is filled; the stripes of "wrong" are told from the rest in grey print too
-FILLS = {"right": COLD, "wrong": "url(#stripes)", "no answer": "#fff", "cell failed": "url(#bars)"}
+FILLS = {"right": COLD, "partly": "url(#dots)", "wrong": "url(#stripes)", "no answer": "#fff", "cell failed": "url(#bars)"}
 STRIPES = "".join(
     f'<pattern id="{name}" width="8" height="8" patternUnits="userSpaceOnUse" patternTransform="rotate({turned})">'
     f'<rect width="8" height="8" fill="#fff"/><rect width="{wide}" height="8" fill="{colour}"/></pattern>'
-    for name, turned, wide, colour in (("stripes", 45, 4, WARM), ("bars", 90, 2, GREY))
+    for name, turned, wide, colour in (("stripes", 45, 4, WARM), ("dots", 0, 4, COLD), ("bars", 90, 2, GREY))
 )
 
 
@@ -50,7 +50,7 @@ def shares(rows, alt):
     """
     left, row = 20 + 10 * max(len(name[:30]) for name in rows), 30
     inside = [f"<defs>{STRIPES}</defs>"]
-    for k, part in enumerate(FILLS):
+    for k, part in enumerate(part for part in FILLS if any(part in counts for counts in rows.values())):
         inside.append(
             f'<rect x="{8 + 150 * k}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>'
             f'<text x="{8 + 150 * k + 28}" y="16">{part}</text>'

@@ -83,7 +83,7 @@ def write_pages(reports: Iterable[Report], folder: File, *, lab: Lab) -> list[Pa
     Returns
     -------
     list of Path
-        ``class.html``, then each student's page in ``students``.
+        ``class.html``, where there are designs ``fronts.html`` without names, then each student's page in ``students``.
 
     Raises
     ------
@@ -106,7 +106,10 @@ def write_pages(reports: Iterable[Report], folder: File, *, lab: Lab) -> list[Pa
     for report in sorted(reports, key=lambda r: (r.student.casefold(), r.student, r.submission, r.sha256)):
         copies[report.student] = copies.get(report.student, -1) + 1
         named.append((f"students/{file_name(report.student, copies[report.student])}.html", report))
-    pages = {"class.html": _templates().get_template("class.html").render(lab=lab, **class_facts(named))}
+    facts = class_facts(named)
+    pages = {"class.html": _templates().get_template("class.html").render(lab=lab, **facts)}
+    if facts["fronts"]:
+        pages["fronts.html"] = _templates().get_template("fronts.html").render(lab=lab, fronts=facts["fronts"])
     student = _templates().get_template("student.html")
     for address, report in named:
         pages[address] = student.render(report=report, lab=lab)
