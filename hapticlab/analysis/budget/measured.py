@@ -32,7 +32,7 @@ REASON = 300
 
 @dataclass(frozen=True)
 class MeasuredDesign(ShowsItself):
-    """What one design was measured to do on a task; without figures where it is not feasible.
+    """What one design was measured to do on a task; nan for figures that a design that is not feasible does not have.
 
     Attributes
     ----------
@@ -111,28 +111,26 @@ def measured(task: Task, design: Mapping[str, Any]) -> MeasuredDesign:
         chosen = design_of(task, design)
     except NoDesign as problem:
         return MeasuredDesign(dict(design) if isinstance(design, Mapping) else {}, why=f"{problem}")
-    return _measured(task, chosen, tuple(sorted(design.items())))
+    return _measured(task, chosen, tuple(design))
 
 
 @functools.lru_cache(maxsize=4096)
-def _measured(task, chosen, given):
-    design = dict(given)
+def _measured(task, chosen, names):
+    design = {name: getattr(chosen, name) for name in names}
     try:
         error, floor, taken, margin, why = _figures(task, chosen)
     except HapticlabError as problem:
         return MeasuredDesign(design, why=" ".join(str(problem).split())[:REASON])
-    if why:
-        return MeasuredDesign(design, why=why)
     parts = (float(f"{100 * one:.{DIGITS}g}") for one in (error, floor, taken))
-    return MeasuredDesign(design, *parts, round(margin, DIGITS) + 0.0)  # no sign on a zero
+    return MeasuredDesign(design, *parts, round(margin, DIGITS) + 0.0, why)  # no sign on a zero
 
 
 def _figures(task, design):
     """Return (error, sensor floor, load, margin, why not)."""
-    nothing = (math.nan,) * 4
     scene = task.scene(design)
     program, limits = compile(scene, T=design.T, live=(), **_options(design)), task.limits(scene)
     taken = cost(program, task.board, every=EVERY)
+    nothing = math.nan, math.nan, taken.share, math.nan
     if not taken.fits:
         return *nothing, f"it does not fit the board: {taken.memory_problem or taken.in_words()}"
     setting = Setting(design.method, design.T, design.substeps, design.hold, "before", "float32")
