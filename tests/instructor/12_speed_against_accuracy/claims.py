@@ -14,7 +14,7 @@ CLAIMS = [
     (
         "The design with the smaller passivity margin swings more",
         lambda lab: (lab.swing[lab.rk4] >= 1.2 * lab.swing[lab.euler]) and lab.margin[lab.rk4] < lab.margin[lab.euler],
-        "both swing alike",
+        "stops a swing of this size",
     ),
     ("semi-implicit Euler, which costs half as much", lambda lab: lab.loads[0] < lab.loads[1], ""),
     (
