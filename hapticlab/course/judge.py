@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +28,7 @@ class Verdict:
     right: bool
     words: str
     slip: str = ""
-    share: float = 0.0
+    share: float = field(default=0.0, repr=False)
 
 
 def judge(exercise: Exercise, case: Case, value: Any) -> Verdict:

@@ -62,7 +62,7 @@ def design_of(task: Task, given: Any) -> Design:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> design_of(hl.design.task("mass"), {"method": "rk4", "T": 2e-3}).T
+    >>> design_of(hl.design.task("mass"), {"method": "rk4", "hold": "soh", "T": 2e-3}).T
     0.002
     """
     if not isinstance(given, Mapping):

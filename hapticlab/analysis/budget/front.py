@@ -26,13 +26,13 @@ class DesignFront(Tabular):
     ----------
     task : Task
     designs : dict of str to MeasuredDesign
-    points : dict of str to (error [%], load [%], margin [N s/m])
-        Reference points, drawn beside the designs.
+    reference_points : dict of str to (error [%], load [%], margin [N s/m])
+        Drawn beside the designs.
     """
 
     task: Task
     designs: Mapping[str, MeasuredDesign]
-    points: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    reference_points: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     @property
     def front(self) -> tuple[str, ...]:
@@ -69,7 +69,7 @@ class DesignFront(Tabular):
 
 
 def front(
-    task: Task, designs: Mapping[str, Mapping[str, Any]], *, points: Mapping[str, Sequence[float]] | None = None
+    task: Task, designs: Mapping[str, Mapping[str, Any]], *, reference_points: Mapping[str, Sequence[float]] | None = None
 ) -> DesignFront:
     """Measure several designs of a task and find the front: those that no other one dominates.
 
@@ -80,8 +80,8 @@ def front(
     task : Task
     designs : dict of str to dict
         Designs by their names, each as :func:`~hapticlab.analysis.budget.measured.measured` takes it.
-    points : dict of str to (error [%], load [%], margin [N s/m]), optional
-        Reference points, to be drawn.
+    reference_points : dict of str to (error [%], load [%], margin [N s/m]), optional
+        To be drawn beside the designs.
 
     Returns
     -------
@@ -102,4 +102,4 @@ def front(
     """
     if not isinstance(designs, Mapping):
         raise AnalysisError("designs need names; give a dict such as {'first': {'T': 0.001, ...}, 'second': {...}}")
-    return DesignFront(task, {str(name): measured(task, one) for name, one in designs.items()}, dict(points or {}))
+    return DesignFront(task, {str(name): measured(task, one) for name, one in designs.items()}, dict(reference_points or {}))

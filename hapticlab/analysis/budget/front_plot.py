@@ -21,7 +21,7 @@ def plot_front(found):
                     at = one.load, one.figures[place]
                     axes.plot(*at, "o", color=COLD, markerfacecolor=inside, markersize=7, zorder=3)
                     _named(axes, name, at, COLD)
-            for name, figures in found.points.items():
+            for name, figures in found.reference_points.items():
                 at = figures[1], figures[place]
                 axes.plot(*at, "x", color=WARM, markersize=7, zorder=2)
                 _named(axes, name, at, WARM)
@@ -45,6 +45,6 @@ def _in_words(found, front):
     said = [f"{name}: {one}{', on the front' if name in front else ''}" for name, one in found.designs.items()]
     said += [
         f"reference point {name}: error {error:.3g} %, load {load:.3g} %, margin {margin:.3g} N s/m"
-        for name, (error, load, margin) in found.points.items()
+        for name, (error, load, margin) in found.reference_points.items()
     ]
     return f"Designs of the task {found.task.name}. " + "; ".join(said)
