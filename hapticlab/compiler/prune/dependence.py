@@ -11,8 +11,9 @@ FORCE = "F"
 class Dependence:
     """The graph of a form's names: each coordinate and signal, :data:`FORCE`, and each watched channel.
 
-    Accelerations that one block of the mass matrix, a constraint or an instantaneous contact couples depend on all that
-    enters their equations.
+    An acceleration depends on those that its row of the mass matrix holds, and on all that a constraint or an instantaneous
+    contact couples to it. Rows from which no entry leads to others are solved alone: with the rest they make the matrix
+    triangular in blocks.
 
     Parameters
     ----------
@@ -36,12 +37,15 @@ class Dependence:
         self.on = {FORCE: self._moving([form.force])}
         for channel, expr in zip(self.channels, form.watch.values(), strict=True):
             self.on[channel] = self._moving([expr])
-        for rows in blocks(form, self.graph):
-            parts = [e for k in rows for e in (*form.M[k], form.f[k])]
-            names = [type(form.coordinates[k]).__name__ for k in rows]
-            parts += [c for model in coupled(form) if _holds(model, form, rows) for c in _held(model)]
-            needed = self._moving(parts).union(names)
-            self.on |= {name: needed - {name} for name in names}
+        names = [*self.coordinates]
+        for k, name in enumerate(names):
+            tied = {j for j, entry in enumerate(form.M[k]) if self.graph(entry).constant != 0}
+            parts = [*form.M[k], form.f[k]]
+            for model in coupled(form):
+                if form.coordinates[k] in model.coordinates:
+                    tied |= {form.coordinates.index(q) for q in model.coordinates if q in form.coordinates}
+                    parts += _held(model)
+            self.on[name] = self._moving(parts).union(names[j] for j in tied) - {name}
         for y, expr in form.updates.items():
             name = type(y).__name__
             self.on[name] = self._moving([expr]) - {name}
@@ -111,10 +115,6 @@ def _held(model):
     """The constraints, gaps and slips that tie the coordinates of a model to each other."""
     gaps = [getattr(c, part) for c in model.contacts for part in ("gap", "slip") if hasattr(c, part)]
     return [*model.constraints, *gaps]
-
-
-def _holds(model, form, rows):
-    return any(form.coordinates[k] in model.coordinates for k in rows)
 
 
 def blocks(form, graph):

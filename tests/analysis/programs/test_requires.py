@@ -10,6 +10,7 @@ from hapticlab.analysis.programs.replay import replay
 from hapticlab.analysis.programs.requires import requires
 from hapticlab.compiler.contacts.broad_phase import contacts_between
 from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.prune.dependence import Dependence
 from hapticlab.errors import AnalysisError, ParameterError, ProgramError, SceneError
 from hapticlab.scene.shapes.shapes import Circle, ground
 
@@ -49,6 +50,36 @@ def test_states_that_the_force_cannot_see():
     assert [found(report, name).why for name in "cgl"] == ["only parts that are left out use it"] * 3
     assert found(report, "z").why == "the force depends on it"
     assert report.felt is scene and report.view is None
+
+
+@pytest.mark.parametrize("order", [1, pytest.param(-1, marks=pytest.mark.wide)])
+def test_an_acceleration_that_goes_one_way_couples_nothing(order):
+    """A pendulum that a mass drags along, and that never pulls back; the mass does not need it, but it needs the mass."""
+    dragged = sp.Eq(length * th.diff(t, 2), -g * sp.sin(th) - z.diff(t, 2) * sp.cos(th))
+    scene, alone = hl.Scene(force=COUPLER, eom=[MASS, dragged][::order]), hl.Scene(force=COUPLER, eom=[MASS])
+    assert found(requires(scene), "th").why == "no path to F or a watched channel"
+    motion = 0.01 * np.sin(np.arange(300) * 0.03)
+    forces = [hl.records.evaluate(hl.compile(one, T=T), x=motion).F for one in (scene, alone)]
+    assert np.array_equal(*forces) and size(scene) == size(alone)
+    report = requires(hl.Scene(force=COUPLER, eom=scene.eom, watch=[th]))
+    assert (report.offered[0].kind, report.offered[0].name) == ("view", "th")
+    assert size(report.felt) == size(alone) and {type(q).__name__ for q in report.view.coordinates} == {"z", "th"}
+    pulls = sp.Eq(m * z.diff(t, 2) + m * length * th.diff(t, 2), COUPLER)  # and now it pulls back
+    assert found(requires(hl.Scene(force=COUPLER, eom=[pulls, dragged])), "th").why == "the force depends on it through z"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_states_are_needed_as_the_inverse_of_the_mass_matrix_says(seed):
+    """Each row of M q'' = x - q: q_j'' enters q_i'' where the inverse has an entry, and so on through q_i."""
+    random = np.random.default_rng(seed)
+    M = np.where(random.random((6, 6)) < 0.18, random.uniform(0.1, 0.4, (6, 6)), 0.0) + np.diag(random.uniform(1, 2, 6))
+    q, one = [hl.coordinate(f"q{i}", unit="m") for i in range(6)], hl.parameters("one", units="1/s^2", values=1.0)
+    eom = [sp.Eq(sum(M[i, j] * q[j].diff(t, 2) for j in range(6)), one * (x(t) - q[i])) for i in range(6)]
+    reached, entries = np.eye(6)[0] > 0, abs(np.linalg.inv(M)) > 1e-12
+    for _ in range(6):
+        reached = reached | (reached @ entries)
+    form = hl.Scene(force=k * (x(t) - q[0]), eom=eom).explicit()
+    assert {type(form.coordinates[row]).__name__ for row in Dependence(form).needed} == {f"q{i}" for i in np.flatnonzero(reached)}
 
 
 def test_the_way_to_the_force_is_named():
