@@ -24,6 +24,7 @@ from .rendering.compensation_limit import CompensationLimit
 from .rendering.compensation_limit import compensation_limit as compensation
 from .rendering.deadbeat import deadbeat_gains
 from .rendering.digital import digital_gains
+from .rendering.limit_cycle import limit_cycle
 from .rendering.over_compensation import over_compensation
 from .rendering.wall_laws import Rendering
 from .vocabulary import page
@@ -42,6 +43,7 @@ __all__ = [
     "digital_gains",
     "front",
     "law_limits",
+    "limit_cycle",
     "measured",
     "over_compensation",
     "task",
