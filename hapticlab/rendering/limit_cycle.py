@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import brentq
 
 from ..base.arguments import choice, number
+from ..base.roots import root
 from ..base.shows_itself import ShowsItself
 from ..base.units import in_si
 from ..device.device import known
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
 
 #: amplitudes of the velocity that are searched: of the width of the sign, and of the speed that the friction alone would give
 SMALLEST, LARGEST, POINTS = 0.2, 1e3, 400
+#: of a quarter of a cycle, for the mean of the smooth sign
+SAMPLES = 1000
 #: the frequency is found to this part, in at most so many rounds
 CLOSE, ROUNDS = 1e-12, 200
 
@@ -143,7 +144,7 @@ class _Balance:
         fastest = LARGEST * max(self.dry / max(self.b, 1e-3 * self.m * w), self.speed)
         V = np.geomspace(SMALLEST * self.speed, fastest, POINTS)
         gain = np.array([self.surplus(one) for one in V])
-        roots = [(brentq(self.surplus, V[i], V[i + 1]), gain[i] < 0) for i in np.flatnonzero(np.diff(np.sign(gain)))]
+        roots = [(root(self.surplus, V[i], V[i + 1]), gain[i] < 0) for i in np.flatnonzero(np.diff(np.sign(gain)))]
         swings = [(one / self.frequency(one), one, grows) for one, grows in roots]
         breaks_away = self.friction / self.k
         stable = next(((A, one) for A, one, grows in reversed(swings) if not grows), None)
@@ -184,5 +185,5 @@ class _Balance:
         """Of s(V' cos), whose largest value is 1."""
         if self.sign == "dead_zone":
             return 4 / math.pi * math.sqrt(max(1 - (self.speed / size) ** 2, 0.0))
-        shape = lambda turn: size * math.cos(turn) ** 2 / math.hypot(size * math.cos(turn), self.speed)  # noqa: E731
-        return 4 / math.pi * quad(shape, 0, math.pi / 2, limit=200)[0]
+        swing = size * np.cos((np.arange(SAMPLES) + 0.5) * math.pi / 2 / SAMPLES)  # a quarter of a cycle
+        return 2 * float(np.mean(swing**2 / np.hypot(swing, self.speed))) / size
