@@ -35,7 +35,7 @@ CLAIMS = [
     (
         "Without an encoder the same law runs without buzzing",
         lambda lab: forces(lab, counts_per_metre=None)[1] < 0.01,
-        "late force makes the handle buzz without an encoder",
+        "makes the handle buzz without one as well",
     ),
     ("Move slowly: you feel nothing", lambda lab: largest_force(lab, 3.0) < 0.03, ""),
     ("Start and stop abruptly: you feel inertia", lambda lab: largest_force(lab, 0.05) > 0.3, ""),
