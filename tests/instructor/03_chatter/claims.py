@@ -5,11 +5,20 @@ import math
 import hapticlab as hl
 
 
-def chatters(lab, stiffness, push):
+def chatters(lab, stiffness, push=1.0, **start):
     """Return the amplitude [m] of a handle that leaves the wall under this push, 0 where it does not."""
     pressed = hl.SimulatedPaddle.from_profile(lab.my_paddle, hand=hl.Hand("pinch", push=push))
-    found = hl.chatter(pressed.run(lab.wall(k=stiffness), duration=4.0))
+    found = hl.chatter(pressed.run(lab.wall(k=stiffness), duration=4.0, **start))
     return found.amplitude if found.contacts_per_second > 0 else 0.0
+
+
+def begins_by_itself(lab):
+    """A hand that presses while the stiffness comes from the exact limit to above the second one."""
+    return chatters(lab, 1.1 * lab.onset, x=1 / (lab.limit + lab.k_h)) > 0
+
+
+def begins_after_a_knock(lab):
+    return chatters(lab, 1.1 * lab.onset, x=1 / (1.1 * lab.onset + lab.k_h), v=0.2) > 0
 
 
 def begins_at_a_stiffness(lab):
@@ -51,8 +60,10 @@ CLAIMS = [
     (
         "Chatter begins at a certain *stiffness*, not at a certain force",
         begins_at_a_stiffness,
-        "stops a small oscillation between these two",
+        "stops small oscillations",
     ),
+    ("the handle vibrates", begins_by_itself, "stops small oscillations"),
+    ("after a knock", begins_after_a_knock, ""),
     (
         "If you press harder, the chatter becomes larger",
         lambda lab: chatters(lab, 1.1 * lab.onset, 2.0) > 1.1 * chatters(lab, 1.1 * lab.onset, 1.0) > 0,
