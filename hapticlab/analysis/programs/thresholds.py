@@ -30,8 +30,9 @@ class Thresholds(ShowsItself):
     Parameters
     ----------
     weber : float
-        The difference that is noticed, as a part of the force, 0 to 1. 0.07 to 0.10 in H. Z. Tan et al., Human factors for the
-        design of force-reflecting haptic interfaces, ASME DSC-55 (1994) 353.
+        The difference that is noticed, as a part of the force, 0 to 1. About 0.07 from 2.5 to 10 N in X. D. Pang, H. Z. Tan
+        and N. I. Durlach, Manual discrimination of force using active finger motion, Percept. Psychophys. 49 (1991) 531; for
+        weaker forces illustrative.
     force : float or text
         The least force that is noticed at all [N]. 29 to 44 mN at finger tips in H. H. King, R. Donlin and B. Hannaford,
         Perceptual thresholds for single vs. multi-finger haptic interaction, Haptics Symposium (2010) 95.
