@@ -223,8 +223,8 @@ CHECKS = {
         "x_o",
     ),
     "no gate": ("hl.check('03.late_wall', hl.Scene(force=k*(x(n-1) - x_o)))", "condition missing", r"hl\.when"),
-    "no gate, lab 04": (
-        "hl.check('04.half_sample_wall', hl.Scene(force=k*(1.5*x(n) - 0.5*x(n-1) - x_o)))",
+    "no gate, lab 11": (
+        "hl.check('11.half_sample_wall', hl.Scene(force=k*(1.5*x(n) - 0.5*x(n-1) - x_o)))",
         "acts outside",
         r"zero where x\(n\) < x_o",
     ),
@@ -233,8 +233,8 @@ CHECKS = {
         "condition is reversed",
         ">=",
     ),
-    "wrong inequality, lab 04": (
-        "hl.check('04.half_sample_wall', hl.Scene(force=hl.when(x(n) < x_o, k*(1.5*x(n) - 0.5*x(n-1) - x_o))))",
+    "wrong inequality, lab 11": (
+        "hl.check('11.half_sample_wall', hl.Scene(force=hl.when(x(n) < x_o, k*(1.5*x(n) - 0.5*x(n-1) - x_o))))",
         "condition is reversed",
         ">=",
     ),
