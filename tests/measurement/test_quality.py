@@ -76,7 +76,7 @@ def test_what_is_no_measurement_is_refused():
 def test_a_simulated_board_says_so():
     with hl.connect("sim://hapkit") as board:
         found = hl.measure.quality("bench 7", board, profile=hl.devices.profile("hapkit"))
-    assert (found.on, found.held) == ("simulated board", "a person's hand")
+    assert (found.on, found.held) == ("simulated board", "nobody")
 
 
 def test_a_file_holds_the_record_and_nothing_of_the_computer(tmp_path):

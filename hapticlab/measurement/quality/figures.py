@@ -75,12 +75,12 @@ def plot_rendered(quality: PaddleQuality) -> Figure:
     one, b, (stiffness, damping) = quality.rendered, quality.profile.b, quality.fractions
     f, magnitude = np.array(one.frequency), np.abs(one.ideal)
     radius = np.array(one.radius)
-    band = f"not told apart by a hand: {100 * stiffness:.0f} %, of damping {100 * damping:.0f} %"
+    band = f"a hand tells nothing apart: {100 * stiffness:.0f} %, of damping {100 * damping:.0f} %"
     with house_style():
         figure = new_figure(height=7.4)
         size, spring, damper = figure.subplots(3, 1, sharex=True)
         size.fill_between(f, (1 - stiffness) * magnitude, (1 + stiffness) * magnitude, label=band, **BAND)
-        size.plot(f, magnitude, **style_of(1), label="ideal wall, its damping with the paddle's b")
+        size.plot(f, magnitude, **style_of(1), label="ideal wall (damping: with the paddle's b)")
         size.plot(f, np.abs(one.Z), "o", color="black", markersize=4, label="rendered")
         size.set(ylabel="|Z| [N s/m]")
         plain_log(size, "y", (magnitude.min(), magnitude.max()))
@@ -95,7 +95,7 @@ def plot_rendered(quality: PaddleQuality) -> Figure:
         damper.axhline(0, color="0.5", linewidth=0.8)
         damper.set(ylabel="damping [N s/m]", xlabel="frequency [Hz]")
         plain_log(damper, "x", (f.min(), f.max()))
-        figure.legend(loc="outside lower center", ncols=3, fontsize="small")
+        figure.legend(loc="outside lower center", ncols=2, fontsize="small")
     return figure
 
 

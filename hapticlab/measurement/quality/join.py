@@ -78,7 +78,7 @@ def paddle_quality(
     simulated = isinstance(paddle, SimulatedPaddle)
     profile = profile or _profile_of(paddle)
     on = "simulated paddle" if simulated else "simulated board" if paddle.url.startswith("sim://") else "board"
-    held = (str(paddle.hand) if paddle.hand else "nobody") if simulated else "a person's hand"
+    hand = str(paddle.hand or "nobody") if simulated else "a person's hand"
     for one in found:
         if not isinstance(one, ZWidth | MeasuredImpedance | VelocityErrors):
             raise AnalysisError(
@@ -92,7 +92,7 @@ def paddle_quality(
         name,
         date or calendar.today().isoformat(),
         on,
-        held,
+        "nobody" if on == "simulated board" else hand,
         profile,
         tuple(_width(one) for one in found if isinstance(one, ZWidth)),
         _rendered(impedances[0]) if impedances else None,

@@ -144,7 +144,7 @@ class PaddleQuality(ShowsItself):
     on : str
         "simulated paddle", "simulated board" or "board".
     held : str
-        The simulated hand; "a person's hand" at a board.
+        The simulated hand, "a person's hand" at a board, or "nobody".
     profile : PaddleProfile
         The constants, those that were measured with intervals.
     widths : tuple of Width
