@@ -177,10 +177,12 @@ class Settings(ShowsItself):
         if not self.m:
             raise PaddleError("m = 0 in the board's settings, so its mass is not known. Identify it: hl.identify.paddle(paddle)")
         measured = self.motor_law == MOTOR_LAWS["MEASURED"]
+        built = {kind: (usual["sensor"], usual.get("drive", Settings.drive)) for kind, usual in NOMINAL.items()}
+        wiring = next((named_profile(kind).wiring for kind, one in built.items() if one == (self.sensor, self.drive)), "")
         curve = {name: getattr(self, name) for name in CURVE} if measured else {}
         return PaddleProfile(
             f"board {self.ident:04X}", T=T, counts_per_metre=1 / abs(self.metres_per_count), nominal=self.is_nominal,
-            source="settings of a board" + ("" if self.is_nominal else f", calibrated on {day_in_words(self.date)}"),
+            wiring=wiring, source="settings of a board" + ("" if self.is_nominal else f", calibrated on {day_in_words(self.date)}"),
             **{name: getattr(self, name) for name in _OF_PROFILE}, **curve,
         )  # fmt: skip
 

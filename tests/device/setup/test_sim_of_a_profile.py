@@ -73,6 +73,16 @@ def test_a_file_of_a_slow_paddle_brings_its_period_and_a_measured_motor_its_curv
         assert board.T == 2e-3 and other.settings.metres_per_count == pytest.approx(1e-4)
 
 
+@pytest.mark.parametrize("kind", ["hapkit", "hapkit_as5048a", "longhorn", "motor_shield"])
+def test_the_twin_of_a_board_keeps_what_the_board_was_told(kind, tmp_path):
+    with hl.connect(f"sim://{kind}") as board:
+        known = hl.identify.twin("mine", base=board, coulomb="50 mN", date="2026-11-20")
+        told = board.settings
+    with hl.connect(f"sim://{known.save(tmp_path / 'mine')}") as board:
+        assert board.settings == replace(told, date=20261120, coulomb=board.settings.coulomb)
+        assert board.settings.coulomb == pytest.approx(0.05)
+
+
 def test_a_wiring_that_no_kind_has_makes_a_plain_board(tmp_path):
     with hl.connect(f"sim://{replace(twin(), wiring='').save(tmp_path / 'bare')}") as board:
         assert board.settings.motor_law == MOTOR_LAWS["LINEAR"] and board.settings.m == pytest.approx(0.034)
