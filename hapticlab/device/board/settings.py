@@ -182,7 +182,8 @@ class Settings(ShowsItself):
         curve = {name: getattr(self, name) for name in CURVE} if measured else {}
         return PaddleProfile(
             f"board {self.ident:04X}", T=T, counts_per_metre=1 / abs(self.metres_per_count), nominal=self.is_nominal,
-            wiring=wiring, source="settings of a board" + ("" if self.is_nominal else f", calibrated on {day_in_words(self.date)}"),
+            wiring=wiring,
+            source="settings of a board" + ("" if self.is_nominal else f", calibrated on {day_in_words(self.date)}"),
             **{name: getattr(self, name) for name in _OF_PROFILE}, **curve,
         )  # fmt: skip
 
