@@ -97,15 +97,12 @@ class FeltDifference(ShowsItself):
 
     def __str__(self) -> str:
         if self.same_bits:
-            first = "not noticed: the same bits at every sample"
-        else:
-            word = "noticed" if self.noticed else "hidden by the encoder" if self.hidden else "not noticed"
-            first = (
-                f"{word}: {self.force.max():.2g} of the force threshold, {self.vibration.max():.2g} of the vibration threshold"
-                f" (the encoder's counts alone: {self.own_vibration.max():.2g})"
-            )
-        before, after = self.cycles
-        return f"{first}; {before} -> {after} cycles per tick on {self.cost[0].board.name}"
+            return "not noticed: the same bits at every sample"
+        word = "noticed" if self.noticed else "hidden by the encoder" if self.hidden else "not noticed"
+        return (
+            f"{word}: {self.force.max():.2g} of the force threshold, {self.vibration.max():.2g} of the vibration threshold "
+            f"(the encoder alone: {self.own_vibration.max():.2g})"
+        )
 
 
 def felt_difference(
