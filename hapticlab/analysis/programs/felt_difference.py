@@ -125,7 +125,8 @@ def felt_difference(
     full, smaller : Scene
         Every parameter bound.
     motion : Telemetry or array
-        A recording, whose x (``x_true`` of a simulated paddle) is replayed, or positions [m], one a period of the paddle.
+        A recording, whose x (``x_true`` of a simulated paddle) is replayed at its own T, with the parameters of the scenes and
+        not of the record; or positions [m], one per period of the paddle.
     paddle : SimulatedPaddle, PaddleProfile or Device
         Its m, b, friction and encoder, and its hand if it has one, are what hides a difference.
     thresholds : Thresholds, optional
@@ -141,7 +142,7 @@ def felt_difference(
     Raises
     ------
     AnalysisError
-        For what is no scene, a record too short for one window, or a paddle whose mass or damping is not known.
+        For what is no scene, a record too short for one window, or a paddle whose mass, damping or period is not known.
 
     Examples
     --------
@@ -174,9 +175,9 @@ def felt_difference(
 
 def _motion(motion, paddle, thresholds):
     """The motion itself, what the encoder shows of it, and the period."""
-    T, counts = known(paddle, "T", or_none="counts_per_metre")
+    (counts,) = known(paddle, or_none="counts_per_metre")
     if not isinstance(motion, Telemetry):
-        true = _positions(motion)
+        true, (T,) = _positions(motion), known(paddle, "T")
         return true, _counted(true, counts, getattr(paddle, "rounding", "floor")), T
     check_record(motion, "felt_difference")
     if "x_true" in motion.channels or counts is None:

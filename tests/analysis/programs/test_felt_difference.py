@@ -80,6 +80,8 @@ def test_a_record_is_replayed_as_its_encoder_showed_it():
     found, told = (felt_difference(GROOVES, SMOOTH, motion, paddle) for motion in (log, log.x_true))
     assert told.full == pytest.approx(found.full, abs=1e-5)  # a program's positions are of float32
     assert told.vibration == pytest.approx(found.vibration, rel=1e-3) and found.own_vibration.max() > 0.5
+    period_unknown = hl.Device(m=0.05, b=0.3, counts_per_metre=1e4, hand=hand)  # the record has its own
+    assert np.array_equal(felt_difference(GROOVES, SMOOTH, log, period_unknown).full, found.full)
     real = hl.records.Telemetry(t=log.t, x=log.x, v=log.v, F=log.F, T=T)  # of a board, which knows its counts alone
     counted = felt_difference(GROOVES, SMOOTH, real, paddle)
     assert np.array_equal(counted.full, found.full)

@@ -28,10 +28,16 @@ def softer_is_closer(lab):
     return softer.force.max() < 0.5 * rigid.force.max() and softer.cycles == rigid.cycles
 
 
+def twice_the_rate(lab):
+    before, after = (price.T_needed() for price in lab.slow["A"].cost)
+    return 1.9 < before / after < 2.2
+
+
 CLAIMS = [
     ("Scenes A and B keep every bit of the force.", exact, ""),
     ("**B is not free**, however", lambda lab: lab.past_stops.noticed, ""),
     ("The tail takes most of the cycles of scene A", lambda lab: 0.6 < lab.saved["A"] < lab.saved["E"], ""),
+    ("Scene A without its tail runs at twice the rate.", twice_the_rate, ""),
     ("**C and D are noticed in fast strokes only.**", only_fast, ""),
     ("**E is noticed although its force stays below the force threshold.**", weak_but_noticed, ENCODER),
     ("**Your limits lie within a quarter of the crossings.**", near_the_crossings, ""),
