@@ -1,4 +1,4 @@
-"""What labs 09, 10 and 14 do with a real paddle: no cell moves its motor unasked."""
+"""What labs 04, 09, 10 and 14 do with a real paddle: no cell moves its motor unasked."""
 
 import builtins
 import contextlib
@@ -42,3 +42,23 @@ def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeyp
                     exec(cell, names)
     assert started == []
     assert len(asked) == asks, asked
+
+
+@pytest.mark.wide
+def test_lab_04_runs_on_a_recording_and_starts_no_motor(monkeypatch):
+    """Its smaller version, which asks nobody in any lab, is above; here every cell runs, for a handle that somebody flicked."""
+    started = []
+    monkeypatch.setattr(hl.devices.SerialPaddle, "start", lambda *_, **__: started.append("motor"))
+    flicked = hl.SimulatedPaddle.from_profile("hapkit", coulomb=0.04, noise=8e-6)
+    first, *rest = cells("04")
+    with hl.connect("sim://hapkit") as board:
+        names = {"board": board}
+        head, simulated, tail = first.partition("simulated = ")
+        exec(f"{head}\npaddle = board\n{simulated}{tail}", names)
+        for cell in rest:
+            exec(cell, names)
+            if "view = hl.live" in cell:
+                names["view"] = SimpleNamespace(log=flicked.run(names["free"], duration=0.6, v=0.4))
+    assert started == []
+    assert names["truth"] is names["twin"] and names["twin"].coulomb == pytest.approx(0.04, rel=0.01)
+    assert names["touched"] is names["leaning"] is names["paddle"]

@@ -37,7 +37,7 @@ CLAIMS = [
     ("With the lower ends the handle slows down", lambda lab: lab.speeds["low"] < 0.3, MISSES),
     ("with the upper ends it accelerates", lambda lab: lab.speeds["high"] > 0.3, MISSES),
     (
-        "A paddle with a fifth of the damping and no compensation would coast as far and allow as stiff a wall",
+        "A paddle with a fifth of the friction and no compensation would coast as far and allow as stiff a wall",
         lambda lab: 0.19 < lab.K_everywhere / lab.K_alone < 0.22,
         "",
     ),
