@@ -13,7 +13,11 @@ CLAIMS = [
         "",
     ),
     ("throws the finger out again and again", lambda lab: lab.leaned[2].state in ("growing", "chatter"), "Dry friction"),
-    ("At the bound the oscillation after a touch dies out", lambda lab: lab.leaned[1].state in ("none", "decaying"), ""),
+    (
+        "At the bound the oscillation after a touch dies out",
+        lambda lab: lab.leaned[1].state in ("none", "decaying"),
+        "a few counts",
+    ),
     ("No hand falls below the bound", lambda lab: min(lab.limits) >= lab.bound, ""),
     ("come close to it: the bound is *tight*", lambda lab: min(lab.limits) < 1.1 * lab.bound, ""),
     ("the bound gives nearly the exact limit in this hand", lambda lab: max(adding_damping(lab)) < 1.1, ""),
@@ -21,7 +25,7 @@ CLAIMS = [
     (
         "the two energies agree within a few percent",
         lambda lab: abs(-lab.hit.W[-1] / lab.generated.generated - 1) < 0.05,
-        "the observer does not know it",
+        "The observer is off",
     ),
     (
         "$KT$ for the backward difference and $2KT$ for Ellis's law, against $KT/2$",

@@ -2,9 +2,9 @@
 
 CLAIMS = [
     (
-        "It agrees with the formula $KT/2 + b_c$",
+        "It agrees with the formula $KT/2 + b_c$ where the solver adds next to nothing",
         lambda lab: abs(lab.tick_needs / lab.formula - 1) < 0.02,
-        "the tick needs more than the formula says",
+        "The tick needs more than the formula says",
     ),
     (
         "the coupler is the stiffest object that this paddle can display",
@@ -15,23 +15,23 @@ CLAIMS = [
     (
         "theory and measurement agree to half a percent",
         lambda lab: abs(lab.slower * lab.swing_frequency(l=0.15, g=9.81, M=0.05, m=0.05, K=lab.finger) / lab.in_hand - 1) < 0.005,
-        "",
+        "holds the handle as well",
     ),
     (
         "After you let go, the pendulum swings *faster*",
         lambda lab: lab.let_go > 1.1 * lab.held_fast,
-        "holds the handle after you let go",
+        "holds the handle as well",
     ),
     (
         "The theory is that of small swings of a free carriage",
         lambda lab: abs(lab.on_rail / lab.let_go - 1) < 0.03,
-        "holds the handle after you let go",
+        "holds the handle as well",
     ),
     ("A calm pendulum makes 0.1 to 0.2 N in the pinch", lambda lab: all(0.1 < force < 0.2 for force in lab.pinched[:4]), ""),
     (
-        "At four times the design limit the free handle chatters with all the force of the motor",
-        lambda lab: lab.set_free[4] > 0.99 * lab.my_paddle.force_max,
-        "",
+        "At four times the design limit the free handle chatters",
+        lambda lab: lab.set_free[4] > 1,
+        "hides the difference",
     ),
-    ("In the pinch the pendulum stays calm", lambda lab: lab.pinched[4] < 0.2, ""),
+    ("In the pinch the pendulum stays calm", lambda lab: lab.pinched[4] < 0.2, "hides the difference"),
 ]

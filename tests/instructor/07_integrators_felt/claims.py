@@ -14,18 +14,18 @@ CLAIMS = [
     ),
     ("RK4 allows a longer step than both", lambda lab: max(lab.limits, key=lab.limits.get) == "rk4", ""),
     (
-        "the handle swings back and forth by many millimetres",
-        lambda lab: lab.end_swing(lab.felt["forward Euler"]) > 5,
+        "the handle swings back and forth",
+        lambda lab: lab.end_swing(lab.felt["forward Euler"]) > 1,
         "",
     ),
     (
         "the motor is at its limit",
-        lambda lab: abs(lab.felt["forward Euler"].F).max() > 0.99 * lab.my_paddle.force_max,
+        lambda lab: abs(lab.felt["forward Euler"].F).max() > 0.99 * (lab.my_paddle.force_max or 0),
         "",
     ),
     (
         "the mass feels like a mass",
-        lambda lab: lab.end_swing(lab.felt["semi-implicit Euler"]) < 0.3,
+        lambda lab: lab.end_swing(lab.felt["semi-implicit Euler"]) < lab.still,
         "",
     ),
     ("This is less than the damping that forward Euler needs", lambda lab: lab.calming < 0.8, ""),
