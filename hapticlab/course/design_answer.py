@@ -98,7 +98,7 @@ def _missed(figures, point):
     """Return by which part each of the three figures is worse than that of a reference point; 0 where it is not."""
     gaps = [sign * (mine - theirs) for mine, theirs, (*_, sign) in zip(figures, point, FIGURES, strict=True)]
     parts = [gaps[0] / point[0], gaps[1] / point[1], gaps[2]]
-    return [part if part > EQUAL else 0.0 for part in parts]
+    return [0.0 if part <= EQUAL else part for part in parts]  # nan is worse than any
 
 
 def _gap(figures, point):

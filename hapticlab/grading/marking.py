@@ -84,6 +84,8 @@ def exercise_report(exercise, cases, found, limits, slips=None):
         )
     if not exercise.judged:
         return ExerciseReport(**about, **_noted(exercise, found.outcomes))
+    if exercise.kind == "design":  # one answer to all scenes: what a second evaluation gives does not count
+        found = replace(found, outcomes=found.outcomes[:1] * len(cases))
     verdicts = [_verdict(exercise, case, outcome) for (case, _), outcome in zip(cases, found.outcomes, strict=False)]
     right = sum(one.right for one in verdicts)
     wrong = {"earned": float(earned_points(exercise, verdicts) if len(verdicts) == len(cases) else 0)}

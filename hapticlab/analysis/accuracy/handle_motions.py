@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -76,10 +77,7 @@ class HandleMotion(ShowsItself):
 
     def derivatives(self, times: ArrayLike, order: int) -> Array:
         """Return x and its derivatives up to an order at an array of times: array (order + 1, times)."""
-        times, graph, wanted = np.atleast_1d(np.asarray(times, float)), Graph(), [sp.sympify(self.x)]
-        for _ in range(order):
-            wanted.append(Partial(wanted[-1], t))
-        graph.variables_of(wanted)  # translates them, and so finds the angles
+        times, (graph, wanted) = np.atleast_1d(np.asarray(times, float)), _translated(sp.sympify(self.x), order)
         angles = {u: 2 * np.pi * float(u.args[0]) * times for u in graph.variables if isinstance(u, driven)}
         found = graph.evaluate(wanted, {t: times} | angles)
         return np.array([np.broadcast_to(part, times.shape) for part in found])
@@ -104,6 +102,16 @@ class HandleMotion(ShowsItself):
 
     def __str__(self) -> str:
         return f"{self.name}: {self.duration:g} s" + (f", {self.why}" if self.why else "")
+
+
+@functools.lru_cache(maxsize=32)
+def _translated(expr, order):
+    """Return a graph with an expression of time and its derivatives, which takes longer than to evaluate them."""
+    graph, wanted = Graph(), [expr]
+    for _ in range(order):
+        wanted.append(Partial(wanted[-1], t))
+    graph.variables_of(wanted)  # translates them, and so finds the angles
+    return graph, wanted
 
 
 def handle_motions(

@@ -79,6 +79,7 @@ class Task(ShowsItself):
         """Of stability and passivity, of a scene that renders this task."""
         return Limits(scene, TRAVEL, float(total_delay(self.paddle)))
 
+    @functools.lru_cache(maxsize=64)  # noqa: B019  it lives as long as its task
     def positions(self, T: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the handle's positions at the samples [m], and what the encoder makes of them."""
         x = self.motion.at(T * np.arange(round(self.reference.horizon / T)))[0]
