@@ -77,8 +77,10 @@ class Shifting(dict):
 @pytest.mark.parametrize(
     "answer",
     [
-        "wall", {}, [], float("nan"), lambda: GOOD, {**GOOD, "T": float("nan")}, {**GOOD, "T": float("inf")}, {**GOOD, "T": 1e308},
-        {**GOOD, "T": "0.001"}, {**GOOD, "law": 1.0}, {**GOOD, "law": "zoh" * 10**6}, {**GOOD, "tau": -1.0}, {**GOOD, "more": 1.0},
+        "wall", {}, [], float("nan"), lambda: GOOD, {**GOOD, "T": float("nan")}, {**GOOD, "T": float("inf")},
+        {**GOOD, "T": 1e308},
+        {**GOOD, "T": "0.001"}, {**GOOD, "law": 1.0}, {**GOOD, "law": "zoh" * 10**6}, {**GOOD, "tau": -1.0},
+        {**GOOD, "more": 1.0},
         {**GOOD, 7: 1.0}, {**GOOD, "T": {"T": 1e-3}}, {**GOOD, "T": [1e-3]}, {"error": 0.0, "load": 0.0, "margin": 9.0},
         Shifting(GOOD), {"wall": GOOD},
     ],

@@ -43,7 +43,8 @@ CLASS = {
     # measures, judges and patches in its own process, where nothing counts
     "forger": (
         "from hapticlab.analysis.budget import measured as m\nfrom hapticlab.course import design_answer as d, judge as j\n"
-        "m._figures = lambda *_: (0, 0, 0, 9, '')\nd.share = lambda *_: 1.0\nj.judge = lambda *_: j.Verdict(True, '', share=1.0)\n"
+        "m._figures = lambda *_: (0, 0, 0, 9, '')\nd.share = lambda *_: 1.0\n"
+        "j.judge = lambda *_: j.Verdict(True, '', share=1.0)\n"
         "design = {'T': 2e-3, 'law': 'zoh', 'velocity': 'backward'}",
         0.0,
     ),
@@ -55,7 +56,8 @@ CLASS = {
         0.0,
     ),
     "spy": (
-        "import sys\nclass Spy(dict):\n    def items(self):\n        frame = sys._getframe()\n        while 'request' not in frame.f_locals:\n"
+        "import sys\nclass Spy(dict):\n    def items(self):\n        frame = sys._getframe()\n"
+        "        while 'request' not in frame.f_locals:\n"
         "            frame = frame.f_back\n        told = frame.f_locals['request']['givens']\n"
         f"        return {{**{GOOD}, 'law': str(told)}}.items()\ndesign = Spy(T=1)",
         0.0,

@@ -50,10 +50,12 @@ def shares(rows, alt):
     """
     left, row = 20 + 10 * max(len(name[:30]) for name in rows), 30
     inside = [f"<defs>{STRIPES}</defs>"]
-    for k, part in enumerate(part for part in FILLS if any(part in counts for counts in rows.values())):
+    parts = [part for part in FILLS if any(part in counts for counts in rows.values())]
+    step = min(150, (WIDTH - 8) // len(parts))
+    for k, part in enumerate(parts):
         inside.append(
-            f'<rect x="{8 + 150 * k}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>'
-            f'<text x="{8 + 150 * k + 28}" y="16">{part}</text>'
+            f'<rect x="{8 + step * k}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>'
+            f'<text x="{8 + step * k + 28}" y="16">{part}</text>'
         )
     for k, (name, counts) in enumerate(rows.items()):
         y, x, whole = 30 + k * row, left, max(1, sum(counts.values()))
