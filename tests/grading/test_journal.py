@@ -20,7 +20,8 @@ ADA = Report("ada", "02", "Walls", "a.ipynb", "c0ffee", cells=((3, "NameError"),
 BOB = Report("bob", "02", "Walls", "b.ipynb", "beef")
 
 
-def test_a_journal_cut_at_any_byte_keeps_what_is_whole_and_goes_on(tmp_path):
+@pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.wide)])
+def test_a_journal_cut_at_any_byte_keeps_what_is_whole_and_goes_on(tmp_path, step):
     path = tmp_path / "j"
     with Journal(path) as journal:
         journal.write("1", ADA)
@@ -28,7 +29,8 @@ def test_a_journal_cut_at_any_byte_keeps_what_is_whole_and_goes_on(tmp_path):
         journal.write("2", BOB)
     whole = path.read_bytes()
     assert Journal(path).reports == {"1": ADA, "2": BOB}
-    for cut in range(len(whole)):
+    ends = range(length - 2, length + 2), range(len(whole) - 2, len(whole))
+    for cut in sorted({*range(0, len(whole), step), *ends[0], *ends[1]}):
         path.write_bytes(whole[:cut])
         kept = ({"1": ADA} if cut >= length - 1 else {}) | ({"2": BOB} if cut >= len(whole) - 1 else {})
         with Journal(path) as journal:

@@ -59,7 +59,7 @@ def test_lab_is_well_formed(folder):
     assert {e.kind for e in lab.exercises} > {"prediction", "text"}, "predict first; a text is handed in"
 
 
-@pytest.mark.always("01_*")
+@pytest.mark.wide
 @pytest.mark.long
 def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, record_property):
     nbclient = pytest.importorskip("nbclient")

@@ -60,6 +60,14 @@ def test_solved_lab_earns_everything_and_says_what_is_true(name, paddle, record_
             assert unless in found.printed, f"on {paddle} this is not true, and the lab does not say why: {words}"
 
 
+def test_an_untouched_lab_earns_nothing():
+    """In this process; in a kernel of its own each lab does so in test_labs.py."""
+    folder = FOLDERS["01_motion_to_force"]
+    found = mark_notebook(folder, read(folder.notebook), ANSWERS / folder.name)
+    assert found.problems == [] and found.earned == 0
+    assert found.printed.count("not answered yet") >= len(found.marks) > 3
+
+
 @pytest.mark.parametrize("name", FOLDERS)
 def test_claims_stand_in_the_text(name):
     if name not in CLAIMED:

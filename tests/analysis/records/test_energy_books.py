@@ -172,7 +172,7 @@ OSCILLATING = {
 
 
 @pytest.mark.parametrize("law", OSCILLATING)
-@pytest.mark.always("impulse", "spring")
+@pytest.mark.always("spring")
 def test_what_oscillates_in_time_puts_work_in(law):
     """A ball on a shaking plate, and one on a spring whose stiffness swings: nothing leaks though t drives both."""
     A, om = hl.parameters("A om", units="m 1/s", values=(0.01, 30))

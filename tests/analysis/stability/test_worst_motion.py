@@ -133,7 +133,7 @@ def found_and_expected(name, samples, points):
 
 
 @pytest.mark.parametrize("name", SCENES)
-@pytest.mark.always("a jump against friction", "a stiffer core")
+@pytest.mark.always("a stiffer core")
 def test_energy_is_that_of_dynamic_programming(name):
     """A grid knows no better motion than the search does, within 5 %; it is no finer than 70 um."""
     found, expected = found_and_expected(name, samples=24 if name == "damper one way outside" else 12, points=31)

@@ -220,6 +220,7 @@ def test_a_killed_process_is_replaced():
     assert list(results) == [299_999 * 150_000] * 59
 
 
+@pytest.mark.wide
 def test_processes_that_die_again_and_again_are_given_up():
     with pytest.raises(
         hl.errors.AnalysisError, match=r"ended 3 times in a row before they finished any point\. .*if __name__ == '__main__':"

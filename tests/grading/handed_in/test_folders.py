@@ -112,6 +112,7 @@ def test_what_is_wrong_in_a_folder_is_told_and_stops_nobody_else(tmp_path, kind,
 @pytest.mark.parametrize("tree", ["", "submitted/"])
 @pytest.mark.parametrize("work", [{}, {"ada/x.ipynb": ADA}], ids=["alone", "beside work"])
 @pytest.mark.parametrize(("names", "words"), [(["a"] * 1500, DEEP), (["b" * 250] * 20, "cannot be read: File name too long")])
+@pytest.mark.always("*-alone-")
 def test_folders_however_deep_stop_nobody_else(tmp_path, tree, work, names, words):
     fill(tmp_path / "class" / tree, {"bob/y.ipynb": BOB, **work})
     nested(tmp_path / "class" / tree / "ada" / "a", names)
