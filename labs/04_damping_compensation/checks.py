@@ -135,7 +135,7 @@ LAB = Lab(
         ),
         Exercise(
             "cycle_amplitude",
-            points=1,
+            points=2,
             asks="the amplitude [m] that repeats itself, from g [N], k [N/m] and the fraction kept in half a swing",
             cases=(
                 Case(
@@ -284,7 +284,7 @@ LAB = Lab(
         Exercise(
             "which_design",
             kind="choice",
-            points=2,
+            points=1,
             asks="the design that is passive for every hand and moves as freely as possible in free air",
             options={
                 "a": "80 % of the lower ends, everywhere",
@@ -299,7 +299,7 @@ LAB = Lab(
                     slips={
                         "a": "Eq. (23.10): with b = 0.30 and |B| = 0.24 N s/m only 120 N/m are passive everywhere.",
                         "c": "Most handles within the intervals have less friction than the upper ends, so they run away.",
-                        "d": "That wall is passive, but the handle coasts only a fifth as far. Where may a compensation act?",
+                        "d": "That wall is passive, but the handle could safely coast farther. Where may a compensation act?",
                     },
                 ),
             ),
