@@ -79,6 +79,27 @@ def test_a_simulated_board_says_so():
     assert (found.on, found.held) == ("simulated board", "nobody")
 
 
+@pytest.mark.wide
+def test_a_simulated_board_is_measured():
+    """Its handle is free: of its own 0.1 N s/m a spring of 100 N/m takes half away, and it rests up to 200 N/m."""
+    starts = hl.measure.Starts(run_ups=0, pushes=0.5, within_count=1)
+    options = {"search": hl.measure.Search(tolerance=0.3), "judged": hl.measure.Judgement(longest=2)}
+    shake = hl.measure.Excitation(drive="motor", frequency=[5, 15, 40], amplitude=0.1)
+    with hl.connect("sim://hapkit") as board:
+        width = hl.measure.z_width(board, B=0, starts=starts, **options)
+        shaken = hl.measure.impedance(
+            board,
+            hl.wall(unilateral=None)(k=100),
+            excitation=shake,
+            averaging=hl.measure.Averaging(blocks=2, realizations=1, settle=0.5),
+            safety=hl.measure.Safety(force_max=2.0),
+        )
+        found = hl.measure.quality("bench 7", board, width, shaken, profile=hl.devices.profile("hapkit"))
+    assert 80 < found.widths[0].rest[0] < 210
+    assert found.rendered.Z.real == pytest.approx([-0.05] * 3, abs=5e-3)
+    assert found.rendered.stiffness == pytest.approx([100] * 3, rel=0.03)
+
+
 def test_a_file_holds_the_record_and_nothing_of_the_computer(tmp_path):
     one = made(K=(math.nan, 700.0))
     path = one.save(tmp_path / "bench7")

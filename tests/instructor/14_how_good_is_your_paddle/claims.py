@@ -12,7 +12,7 @@ CLAIMS = [
         "dry friction",
     ),
     (
-        "smaller of the last two is what you can expect in this grip",
+        "The smaller of the last two is what you can expect in this grip",
         lambda lab: 0.75 < min(lab.at_zero) / min(lab.stable, lab.one_count) < 1.25,
         "both borders may lie higher than predicted",
     ),
