@@ -173,7 +173,7 @@ LAB = Lab(
                     slips={
                         "a": "Try substeps=4 in the cell below: the error does not change.",
                         "b": "Try dtype='float64' in the cell below: the error does not change. float32 is accurate to 1e-7.",
-                        "c": "With hold='soh' the same coupler and the same RK4 have an error below 0.1 %.",
+                        "c": "With hold='soh' the same coupler and the same RK4 have an error that is many times smaller.",
                     },
                 ),
             ),

@@ -14,5 +14,9 @@ WRONG = [
     ("disk_size", lambda K, theta, b, T: K * abs(T / (4 * b) * (1 + 1j / np.tan(theta / 2)))),
     ("controlled_force", lambda f, credit, D, T, alpha_max: (
         f if credit >= 0 or D == 0 else f - min(-credit * T / D**2, alpha_max) * D / T)),
+    ("observed_energy", lambda x, F: np.concatenate([[0], np.cumsum((F[1:] + F[:-1]) / 2 * np.diff(x))])),
+    ("disk_size", lambda K, theta, b, T: (
+        K * abs(T / (4 * b) * (1 + 1j / np.tan(theta / 2)))
+        / abs(1 + K * T / (4 * b) * (1 + 1j / np.tan(theta / 2))))),
     ("why_it_failed", "c"),
 ]  # fmt: skip
