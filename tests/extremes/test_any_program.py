@@ -199,7 +199,7 @@ def damaged(draw):
     return replace(program, tick=replace(program.tick, instructions=tuple(code)))
 
 
-@settings(EVERY_DRAW, max_examples=30)
+@settings(EVERY_DRAW, max_examples=20)
 @given(damaged(), rows(("f32",)))
 def test_a_damaged_program_is_refused_in_words_or_runs_as_any_other(program, handle):
     try:

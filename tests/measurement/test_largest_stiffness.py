@@ -61,6 +61,7 @@ ONE = hl.measure.Starts(run_ups="1 mm", within_count=2)
 COARSE = hl.measure.Search(first=300.0, tolerance=0.1)
 
 
+@pytest.mark.wide
 def test_more_damping_does_not_look_worse_behind_an_encoder():
     """100 um per count, no dry friction: one count buzzes at any damping, and the unstable border is the exact limit's."""
     little, much = (largest_stiffness(heavy(b, counts_per_metre=1e4), starts=ONE, search=COARSE) for b in (0.5, 8.0))

@@ -138,7 +138,7 @@ class TestSign:
     @pytest.mark.parametrize("hand", HANDS)
     @pytest.mark.parametrize(("m", "coulomb"), [(0.03, 0.0), (0.2, 0.2)])
     @pytest.mark.parametrize(("wiring", "verdict"), [(1, "right"), (-1, "wrong")])
-    @pytest.mark.always("-1-wrong-0.2-0.2-flicks")  # the right one is in each calibration
+    @pytest.mark.always("-1-wrong-0.03-0.0-flicks")  # the right one is in each calibration
     def test_positive_work_tells_the_sign(self, hand, m, coulomb, wiring, verdict):
         mechanics = SimulatedPaddle(m=m, b=0.1, T=1e-3, coulomb=coulomb)
         paddle = bench.paddle(store=KNOWN.to_bytes(), wiring=wiring, mechanics=mechanics)
