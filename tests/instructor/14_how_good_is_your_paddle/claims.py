@@ -42,7 +42,7 @@ CLAIMS = [
         "",
     ),
     (
-        "Up to the frequency that is printed above your paddle is transparent",
+        "Up to the frequency that is printed above, your paddle renders this wall as an ideal one",
         lambda lab: 5 < lab.same_up_to(lab.f, lab.off, 0.23) < 200,
         "",
     ),
