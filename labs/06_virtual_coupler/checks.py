@@ -594,7 +594,7 @@ LAB = Lab(
                     "c",
                     slips={
                         "a": "A mass stores energy and gives it back, so it dissipates nothing. Try a hand that is only a mass, "
-                        "hl.Hand(m=0.02), at four times the design limit.",
+                        "hl.Hand(m=0.02), at four times the design limit and without dry friction (coulomb=0).",
                         "b": "This hand is a mass, a spring and a damper: it does not react. A real hand also reacts too late "
                         "for chatter of more than 10 Hz.",
                     },
