@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from math import hypot
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,7 +45,7 @@ class KnownHandle:
     half_widths: dict[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, device, record: Telemetry) -> KnownHandle:
+    def of(cls, device: Any, record: Telemetry) -> KnownHandle:
         """Return what is known of the handle of a record.
 
         A profile says it of the paddle that it was identified on. Where its delay was not identified, the record says how
@@ -76,8 +76,10 @@ def widened(
     Each constant of the handle that is off by half its interval would shift the estimate. The shifts, found by linear least
     squares, are regarded as independent of each other and of the noise.
     """
+    if not handle.half_widths:
+        return fitted
     at, covariance, t = fitted.values, fitted.covariance.copy(), float(student(confidence, fitted.freedom)[0])
-    rest, slopes = linearised(motion(handle), y, at, scales) if handle.half_widths else (None, None)
+    rest, slopes = linearised(motion(handle), y, at, scales)
     for name in handle.half_widths:
         moved = rest - (y - motion(handle.off(name))(at[:, None])[:, 0])
         shift = np.linalg.lstsq(slopes[:, :, 0], -moved[:, 0], rcond=None)[0] * scales[:, 0]
