@@ -256,6 +256,19 @@ def test_a_solved_lab_that_is_downloaded_earns_in_the_grader_what_it_earns_on_a_
 
 
 @pytest.mark.slow
+def test_a_twin_lies_beside_its_notebook_where_another_lab_reads_it(page, site):
+    twin = 'import hapticlab as hl\ntwin = hl.devices.PaddleProfile("bench 7", m=0.034, b=0.125)\n'
+    open_lab(page, site, "09")
+    told = run_cell(page, FIRST, f'{twin}print(twin.save("bench7.json"), hl.devices.profile("bench7.json") == twin)')
+    assert told.split() == ["bench7.json", "True"]
+    open_lab(page, site, "10")
+    file = "../09_identify/bench7.json"
+    asked = f'{twin}print(hl.devices.profile("{file}") == twin, hl.connect("sim://{file}").settings.m)'
+    same, mass = run_cell(page, "from math import", asked).split()
+    assert same == "True" and float(mass) == pytest.approx(0.034)
+
+
+@pytest.mark.slow
 def test_the_simulated_board_answers_in_lab_00(page, site):
     open_lab(page, site, "00")
     run_cell(page, FIRST)
