@@ -2,7 +2,7 @@
 
 import numpy as np
 
-ENCODER, HEAVY = "the encoder of your paddle shakes the handle more", "your handle is too heavy for the grooves"
+ENCODER, COARSE = "the encoder of your paddle shakes the handle more", "the steps of your coarse encoder are noticed"
 
 
 def exact(lab):
@@ -38,7 +38,7 @@ CLAIMS = [
     ("**B is not free**, however", lambda lab: lab.past_stops.noticed, ""),
     ("The tail takes most of the cycles of scene A", lambda lab: 0.6 < lab.saved["A"] < lab.saved["E"], ""),
     ("Scene A without its tail runs at twice the rate.", twice_the_rate, ""),
-    ("**C and D are noticed in fast strokes only.**", only_fast, ""),
+    ("**C and D are noticed in fast strokes only.**", only_fast, COARSE),
     ("**E is noticed although its force stays below the force threshold.**", weak_but_noticed, ENCODER),
     ("**Your limits lie within a quarter of the crossings.**", near_the_crossings, ""),
     ("but **on a softer coupler**", lambda lab: lab.offer.scene.values["k_1"] < 200, ""),
