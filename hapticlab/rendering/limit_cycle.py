@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -143,9 +142,9 @@ class _Balance:
         w = math.sqrt(self.k / self.m)
         fastest = LARGEST * max(self.dry / max(self.b, 1e-3 * self.m * w), self.speed)
         V = np.geomspace(SMALLEST * self.speed, fastest, POINTS)
-        gain = np.array([self.surplus(one) for one in V])
+        gain = self.surplus(V)
         roots = [(root(self.surplus, V[i], V[i + 1]), gain[i] < 0) for i in np.flatnonzero(np.diff(np.sign(gain)))]
-        swings = [(one / self.frequency(one), one, grows) for one, grows in roots]
+        swings = [(one / float(self.frequency(one)), one, grows) for one, grows in roots]
         breaks_away = self.friction / self.k
         stable = next(((A, one) for A, one, grows in reversed(swings) if not grows), None)
         if gain[-1] > 0:
@@ -154,36 +153,34 @@ class _Balance:
         if stable is None or stable[0] <= breaks_away:
             return LimitCycle(0.0, 0.0, math.inf)
         least = [A for A, _, grows in swings if grows and A < stable[0]]
-        return LimitCycle(stable[0], self.frequency(stable[1]) / (2 * math.pi), max([breaks_away, *least]))
+        return LimitCycle(stable[0], stable[1] / stable[0] / (2 * math.pi), max([breaks_away, *least]))
 
     def surplus(self, V):
-        """Force in phase with the velocity that remains [N]: positive where the swing grows."""
-        w = self.frequency(V)
-        return self.compensation(V, w).real - self.b * V - 4 * self.friction / math.pi
+        """Force in phase with velocities of amplitudes V that remains [N]: positive where the swing grows."""
+        return self.compensation(V, self.frequency(V)).real - self.b * V - 4 * self.friction / math.pi
 
     def frequency(self, V):
-        """The frequency [rad/s] at which the forces beside the velocity's phase balance."""
-        w = math.sqrt(self.k / self.m)
+        """The frequencies [rad/s] at which the forces beside the velocity's phase balance."""
+        w = np.full(np.shape(V), math.sqrt(self.k / self.m))
         for _ in range(ROUNDS):
             beside = self.compensation(V, w).imag / V  # M w - k/w
-            new = (beside + math.sqrt(beside**2 + 4 * self.k * self.m)) / (2 * self.m)
-            if abs(new - w) <= CLOSE * w:
-                return new
-            w = new
+            last, w = w, (beside + np.sqrt(beside**2 + 4 * self.k * self.m)) / (2 * self.m)
+            if np.all(abs(w - last) <= CLOSE * last):
+                break
         return w
 
     def compensation(self, V, w):
-        """First harmonic of the compensating force on the handle [N], a complex number; the velocity is V."""
-        z, hold = cmath.exp(1j * w * self.T), 0.5 * w * self.T
-        over, under = (sum(c * z**-i for i, c in enumerate(part)) for part in self.transfer)
+        """First harmonics of the compensating force on the handle [N], complex numbers; the velocity is V."""
+        over, under = (np.polyval(part[::-1], np.exp(-1j * w * self.T)) for part in self.transfer)
         seen = over / under / (1j * w) * V  # the estimate, of a position V/(j w)
-        size = abs(seen)
-        held = math.sin(hold) / hold * cmath.exp(-1j * (hold + w * self.late))
+        size, hold = abs(seen), 0.5 * w * self.T
+        held = np.sin(hold) / hold * np.exp(-1j * (hold + w * self.late))
         return (self.viscous * size + self.dry * self.first_harmonic(size)) * seen / size * held
 
     def first_harmonic(self, size):
         """Of s(V' cos), whose largest value is 1."""
         if self.sign == "dead_zone":
-            return 4 / math.pi * math.sqrt(max(1 - (self.speed / size) ** 2, 0.0))
-        swing = size * np.cos((np.arange(SAMPLES) + 0.5) * math.pi / 2 / SAMPLES)  # a quarter of a cycle
-        return 2 * float(np.mean(swing**2 / np.hypot(swing, self.speed))) / size
+            return 4 / math.pi * np.sqrt(np.maximum(1 - (self.speed / size) ** 2, 0.0))
+        cosine = np.cos((np.arange(SAMPLES) + 0.5) * math.pi / 2 / SAMPLES)  # a quarter of a cycle
+        swing = np.multiply.outer(size, cosine)
+        return 2 * np.mean(swing * cosine / np.hypot(swing, self.speed), axis=-1)
