@@ -24,11 +24,12 @@ def plot_front(found):
             for name, figures in found.reference_points.items():
                 at = figures[1], figures[place]
                 axes.plot(*at, "x", color=WARM, markersize=7, zorder=2)
-                _named(axes, name, at, WARM)
+                _named(axes, name, at, WARM, below=True)
             if place == 0:
                 plain_log(axes, "y")
             else:
                 axes.axhline(0, color="black", linewidth=0.8, linestyle=":", zorder=1)
+            axes.margins(0.1)
             axes.set(xlabel="load of the board [%]", ylabel=label)
             axes.set_title(better, fontsize="small")
         figure.suptitle(f"{found.task.name}: filled circles are on the front, crosses are reference points", fontsize="medium")
@@ -36,8 +37,9 @@ def plot_front(found):
     return figure
 
 
-def _named(axes, name, at, colour):
-    axes.annotate(name, at, (4, 4), textcoords="offset points", fontsize="x-small", color=colour, zorder=4)
+def _named(axes, name, at, colour, below=False):
+    away = (4, -10) if below else (4, 4)
+    axes.annotate(name, at, away, textcoords="offset points", fontsize="x-small", color=colour, zorder=4)
 
 
 def _in_words(found, front):
