@@ -16,7 +16,7 @@ from ...compiler.engines.engine import load
 from ...compiler.tick.compile_scene import compile
 from ...errors import HapticlabError
 from ..accuracy.port_error import WILD, compared
-from ..accuracy.tradeoff_trials import Setting
+from ..accuracy.tradeoff_trials import Setting, machine_is_here
 from .design import NoDesign, design_of
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def _figures(task, design):
         step = 1e3 * design.T / design.substeps
         stable = f"{design.method} is stable up to a step of {ratio * step:.3g} ms"
         return *nothing, f"it is unstable: {stable}, and this step is {step:.3g} ms"
-    loaded = load(program)
+    loaded = load(program, "vm" if machine_is_here() else "auto")  # which needs no time to compile
     true, seen = (_forces(task, loaded, program, positions) for positions in task.positions(design.T))
     found = compared(seen, task.reference, design.T, task.paddle.delay)
     if not math.isnan(found.unstable_at) or not np.isfinite(true).all():

@@ -58,7 +58,7 @@ def test_every_engine_gives_the_same_figures(monkeypatch):
     design = {"method": "verlet", "T": 2e-3, "substeps": 1, "hold": "foh"}
     usual = hl.design.measured(mass, design)
     module._measured.cache_clear()
-    monkeypatch.setattr(module, "load", lambda program: load(program, "interpreter"))
+    monkeypatch.setattr(module, "load", lambda program, engine: load(program, "interpreter"))
     assert hl.design.measured(mass, design) == usual
 
 
