@@ -66,7 +66,8 @@ def paddle_quality(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
-    >>> width = hl.measure.z_width(paddle, B=0, starts=hl.measure.Starts(run_ups=0), search=hl.measure.Search(tolerance=0.2))
+    >>> start, coarse = hl.measure.Starts(run_ups=0, within_count=1), hl.measure.Search(growth=3, tolerance=0.5)
+    >>> width = hl.measure.z_width(paddle, B=0, starts=start, search=coarse)
     >>> bench = hl.measure.quality("bench 7", paddle, width, date="2026-11-20")
     >>> print(bench.lines()[0])
     Eq. (23.10) guarantees walls up to 200 N/m in every passive hand.
