@@ -213,7 +213,7 @@ class LiveView:
         return replace(log, channels={**log.channels, "intent": intent}, units={**log.units, "intent": "m"})
 
     def __repr__(self):
-        shown = ", ".join(f"{s.name} = {self.values[s.name]:g} {s.unit}" for s in self._session.spans)
+        shown = ", ".join(f"{s.name} = {self.values[s.name]:g} {s.unit}".removesuffix(" 1") for s in self._session.spans)
         state = self.status.rstrip(".") if self._session.on_view else "not on view"
         return f"live view of {self._session.source.program.name}: {state}; {shown or 'no parameters'}"
 

@@ -1022,3 +1022,11 @@ def test_a_released_drag_lets_go_where_asked_and_a_blind_picture_hides_where_the
         shown.append([item[0] for item in session.stage.drawn(0.02)])
     assert told == {True: False, False: True}
     assert len(shown[0]) > len(shown[1])
+
+
+def test_a_parameter_without_a_unit_is_said_without_one():
+    k, s = hl.parameters("k s", units="N/m 1", values=(100, 0.5))
+    view = hl.live(
+        PADDLE, hl.Scene(force=k * (hl.x(hl.n) + s * (hl.x(hl.n) - hl.x(hl.n - 1)))), sliders={"k": (0, 200), "s": (0, 2)}
+    )
+    assert repr(view).endswith("k = 100 N/m, s = 0.5")
