@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...base.in_notebook import is_in_browser
@@ -100,7 +101,9 @@ def _walk(url, person):
     yield checks.Check("port", "ok", f"{url} opens")
     paddle = None
     try:
-        found, paddle = checks.firmware(port, url, SerialPaddle)
+        simulated = getattr(port, "paddle", None)  # it knows its period; a board is asked to run at the usual one
+        connected = partial(SerialPaddle, T=simulated.T) if simulated else SerialPaddle
+        found, paddle = checks.firmware(port, url, connected)
         yield from found
         if paddle is not None:
             yield from _on_board(paddle, person)

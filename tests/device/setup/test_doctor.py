@@ -169,6 +169,11 @@ def _brief(url, port):
 
 
 class TestBoard:
+    def test_a_simulated_board_runs_at_the_period_of_its_paddle(self, tmp_path):
+        file = hl.devices.profile("hapkit_slow").at(T=5e-3).save(tmp_path / "mine")
+        assert "T = 2 ms" in doctor("sim://hapkit_slow")["firmware"].found
+        assert "T = 5 ms" in doctor(f"sim://{file}")["firmware"].found
+
     def test_a_good_paddle_without_a_person(self):
         told = []
         report = doctor("sim://hapkit", tell=told.append)
