@@ -56,6 +56,6 @@ CLAIMS = [
     ("Fit $F = k x$ through the origin", same_stiffness, ""),
     ("In the pinch the handle stops near 6 mm", lambda lab: abs(pinch(lab).x[-1] - 6e-3) < 0.2e-3, ""),
     ("The hand feels about 1.8 N", lambda lab: abs(pinch(lab).F[-1] - 1.8) < 0.05, ""),
-    ("balances the largest force of the motor", balances, "are more than the grip needs"),
-    ('your reach the "spring" exerts a constant force', saturates, "are more than the grip needs"),
+    ("balances the largest force of the motor", balances, "is more than the grip needs"),
+    ('your reach the "spring" exerts a constant force', saturates, "is more than the grip needs"),
 ]
