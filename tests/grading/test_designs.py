@@ -1,15 +1,18 @@
 """A class of designs: graded end to end, measured by the grader alone, and shown to the class without names."""
 
 import re
+from dataclasses import replace
 
 import pytest
 from attacks.small_lab import notebook
 from page_reader import Page
 
 from hapticlab.grading.assignment import find_assignment
+from hapticlab.grading.formats import write
+from hapticlab.grading.formats.words import for_student, state
 from hapticlab.grading.pages.fronts import on_front
 from hapticlab.grading.pages.pages import write_pages
-from hapticlab.grading.report import Report
+from hapticlab.grading.report import ExerciseReport, Failing, Report
 from hapticlab.grading.run import run
 from hapticlab.grading.sessions.limits import Limits
 
@@ -88,6 +91,16 @@ def test_designs_earn_what_they_reach_whatever_their_code_does(graded):
     reports = {report.student: report for report in graded[0].reports}
     assert {name: reports[name].earned for name in CLASS} == {name: points for name, (_, points) in CLASS.items()}
     assert "law is '[{}, {}]'" in reports["spy"].exercises[0].words, "no session is told the scenes"
+
+
+@pytest.mark.parametrize(("earned", "word"), [(3.0, "right"), (1.5, "partly"), (0.0, "wrong")])
+def test_part_of_the_points_is_told_from_wrong(earned, word):
+    one = ExerciseReport("design", "design", points=3.0, earned=earned, answered=True, words="it misses A", cases=2)
+    report = Report("ada", "43", "A budget", "ada.ipynb", exercises=(one,))
+    assert f"  {word:<10} design (3)" in write("text", [report])
+    assert state(one) == word and Report.from_json(report.to_json()) == report
+    hidden = replace(one, failing=Failing({"task": "wall", "K": 450.0}, {"T": 1e-3}, None, "", public=False))
+    assert "450" not in for_student(hidden) and ("right" == word or "too few reference points" in for_student(hidden))
 
 
 @pytest.mark.wide

@@ -33,16 +33,21 @@ def _head(report):
 def _lines(report):
     for one in report.exercises:
         worth = f" ({points(one.points)})" if one.points else ""
-        said = f": {clean(one.words)}" if one.words and state(one) == "wrong" else ""
+        lost = state(one) in ("wrong", "partly")
+        said = f": {clean(one.words)}" if one.words and lost else ""
         yield f"  {state(one):<10} {clean(one.name)}{worth}{said}"
-        if one.hint and state(one) == "wrong":
+        if one.hint and lost:
             yield f"  {'':<10} hint: {clean(one.hint)}"
     yield from (f"  {line}" for line in failed_cells(report))
 
 
 def _wrong(report):
-    wrong = [clean(one.name) for one in judged(report) if state(one) != "right"]
-    return f"; wrong or missing: {', '.join(wrong)}" if wrong and not report.problem else ""
+    if report.problem:
+        return ""
+    wrong = [clean(one.name) for one in judged(report) if state(one) not in ("right", "partly")]
+    parts = [clean(one.name) for one in judged(report) if state(one) == "partly"]
+    told = f"; wrong or missing: {', '.join(wrong)}" if wrong else ""
+    return told + (f"; a part of the points: {', '.join(parts)}" if parts else "")
 
 
 def _summary(reports):
