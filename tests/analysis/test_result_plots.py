@@ -20,7 +20,7 @@ pytest.importorskip("matplotlib")
 #: results that are a number or two, a text, or the parts of something that is drawn elsewhere
 WITHOUT = {
     "Order", "PassivityIndices", "ForceError", "SensorFloor", "DigitalGains", "DeadbeatGains", "Requirements",
-    "Report", "CheckResult", "Settings", "Contacts", "Found", "PaddleProfile",
+    "Report", "CheckResult", "Settings", "Contacts", "Found", "PaddleProfile", "LimitCycle", "MeasuredDesign",
 }  # fmt: skip
 #: what is run, felt or shown, and is no result
 OTHERS = {
