@@ -1,4 +1,4 @@
-"""Three tasks of a course: a damped wall, a mass behind a coupler, and a ball on the paddle."""
+"""Three tasks of a course: a damped wall, a mass behind a coupler, and a mass that strikes a bumper."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ import functools
 import inspect
 import math
 from numbers import Real
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import sympy as sp
 
+from ...base.profile.paddle_profile import PaddleProfile
 from ...errors import AnalysisError
 from ...scene.contact.contact import Contact
 from ...scene.contact.penalty_laws import penalty
@@ -22,9 +23,6 @@ from ...scene.notation.symbols import coordinate, n, parameters, t, v, x
 from ...scene.scene import Scene
 from ..accuracy.handle_motions import HandleMotion, handle_motions
 from .task import OF_LAW, TEXTBOOK, Task
-
-if TYPE_CHECKING:
-    from ...base.profile.paddle_profile import PaddleProfile
 
 #: of a hand, for the Kalman filter [m/s^2]
 ACCELERATION = 10.0
@@ -41,17 +39,17 @@ def task(
     board: Literal["uno", "pico", "cortex-m4f"] = "uno",
     **constants: float,
 ) -> Task:
-    """One of three tasks: a wall with a damper, a mass behind a virtual coupler, or a ball that is carried and tossed.
+    """One of three tasks: a wall with a damper, a mass behind a virtual coupler, or a mass that strikes a bumper.
 
     Parameters
     ----------
     name : {"wall", "mass", "bumper"}
     paddle : PaddleProfile
-        The textbook paddle unless given: b = 0.6 N s/m, 50 um a count, 8 N.
+        The textbook paddle unless given: b = 1 N s/m, 20 um a count, 8 N.
     board : {"uno", "pico", "cortex-m4f"}
     **constants : float
-        Of the wall K [N/m] and B [N s/m]; of the mass m [kg], K and b of its coupler; of the ball m [kg] and the
-        stiffness k_b of its contact [N/m].
+        Of the wall K [N/m] and B [N s/m]; of the mass m [kg], K and b of its coupler; of the bumper m [kg], the stiffness
+        k_b of its contact and K of its coupler [N/m].
 
     Returns
     -------
@@ -68,8 +66,10 @@ def task(
     >>> hl.design.task("wall", K=500).takes
     ('T', 'law', 'velocity', 'tau')
     """
-    if name not in TASKS:
+    if not isinstance(name, str) or name not in TASKS:
         raise AnalysisError(f"task {name!r} does not exist; there are {', '.join(TASKS)}")
+    if not isinstance(paddle, PaddleProfile):
+        raise AnalysisError(f"paddle = {paddle!r}; a task needs a profile, such as hl.devices.profile('hapkit')")
     made = TASKS[name]
     known = [one for one in inspect.signature(made).parameters if one not in ("paddle", "board")]
     for constant, value in constants.items():

@@ -123,6 +123,7 @@ def test_overload_still_tells_its_load():
     ("name", "constants", "said"),
     [
         ("floor", {}, "task 'floor' does not exist; there are wall, mass, bumper"),
+        ("wall", {"paddle": "hapkit"}, "paddle = 'hapkit'; a task needs a profile, such as hl.devices.profile('hapkit')"),
         ("wall", {"m": 1.0}, "the task wall has no constant m; it has K, B"),
         ("wall", {"K": math.nan}, "K = nan; the task wall needs a finite number > 0"),
     ],
