@@ -121,6 +121,7 @@ DAMAGED = {
     "another version": (lambda held: held.update(version=2), "reads version 1"),
     "a profile without mass": (lambda held: held["profile"]["constants"].pop("m [kg]"), "m is missing"),
     "many rows": (lambda held: held.update(velocities=held["velocities"] * 50), "at most 12"),
+    "an unknown frequency": (lambda held: held["rendered"]["frequency [Hz]"].__setitem__(0, None), "must hold numbers"),
     "a frequency of 0": (lambda held: held["rendered"]["frequency [Hz]"].__setitem__(0, 0), "above 0 Hz"),
 }  # fmt: skip
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from .record import PaddleQuality
+    from .record import PaddleQuality, Rendered
 
 #: part of the ideal within which a hand notices nothing: as in ``record``
 BAND = {"facecolor": "0.5", "alpha": 0.25, "linewidth": 0}
@@ -31,7 +31,9 @@ def plain(text: str) -> str:
 
 def plot_quality(quality: PaddleQuality) -> Figure:
     """Draw the borders where they were measured, else the impedance."""
-    return plot_widths(quality) if quality.widths or quality.rendered is None else plot_rendered(quality)
+    if quality.widths or quality.rendered is None:
+        return plot_widths(quality)
+    return plot_rendered(quality.rendered, quality.profile.b, quality.fractions)
 
 
 def plot_widths(quality: PaddleQuality) -> Figure:
@@ -70,9 +72,12 @@ def _ends(values):
     return 10 ** math.floor(math.log10(0.9 * low)), 10 ** math.ceil(math.log10(1.1 * high))
 
 
-def plot_rendered(quality: PaddleQuality) -> Figure:
-    """Draw magnitude, effective stiffness and damping of a rendered wall, with the band that a hand cannot tell apart."""
-    one, b, (stiffness, damping) = quality.rendered, quality.profile.b, quality.fractions
+def plot_rendered(one: Rendered, b: float, fractions: tuple[float, float]) -> Figure:
+    """Draw magnitude, effective stiffness and damping of a rendered wall, with the band that a hand cannot tell apart.
+
+    ``b`` is the paddle's own damping [N s/m], and ``fractions`` are those of stiffness and of damping.
+    """
+    stiffness, damping = fractions
     f, magnitude = np.array(one.frequency), np.abs(one.ideal)
     radius = np.array(one.radius)
     band = f"a hand tells nothing apart: {100 * stiffness:.0f} %, of damping {100 * damping:.0f} %"
@@ -143,25 +148,25 @@ def _at_zero(one):
 
 def plot_overlay(qualities: Sequence[PaddleQuality], numbers: Sequence[int]) -> Figure:
     """Draw over frequency how far each paddle's rendered wall is from the ideal one; of many, name the best and the worst."""
-    shown = [(number, one) for number, one in zip(numbers, qualities, strict=True) if one.rendered is not None]
-    order = sorted(shown, key=lambda pair: -pair[1].rendered.same_up_to)
+    shown = [(f"{n}  {plain(_cut(q.name))}", q.rendered) for n, q in zip(numbers, qualities, strict=True) if q.rendered]
+    order = sorted(shown, key=lambda pair: -pair[1].same_up_to)
     named = order if len(shown) <= NAMED else [order[0], order[-1]]
     with house_style():
         figure = new_figure(height=4.6)
         axes = figure.add_subplot()
-        limit = shown[0][1].fractions[0]
-        for number, one in order:
-            if (number, one) not in named:
-                axes.plot(*_course(one), color="0.6", linewidth=0.8)
-        for k, (number, one) in enumerate(named):
-            axes.plot(*_course(one), **style_of(k), linewidth=1.8, label=f"{number}  {plain(_cut(one.name))}")
+        limit = qualities[0].fractions[0]
+        for pair in order:
+            if pair not in named:
+                axes.plot(*_course(pair[1]), color="0.6", linewidth=0.8)
+        for k, (name, one) in enumerate(named):
+            axes.plot(*_course(one), **style_of(k), linewidth=1.8, label=name)
         axes.axhspan(0, 100 * limit, label=f"not told apart by a hand, {100 * limit:.0f} %", **BAND)
         axes.set(xlabel="frequency [Hz]", ylabel="|Z/ideal - 1| [%]", ylim=(0, MOST_OFF))
-        ends = [frequency for _, one in shown for frequency in one.rendered.frequency]
+        ends = [frequency for _, one in shown for frequency in one.frequency]
         plain_log(axes, "x", (min(ends), max(ends)))
         figure.legend(loc="outside lower center", ncols=3, fontsize="small")
     return figure
 
 
 def _course(one):
-    return np.array(one.rendered.frequency), 100 * one.rendered.off
+    return np.array(one.frequency), 100 * one.off

@@ -76,10 +76,11 @@ def paddle_quality(
     True
     """
     text_of(name, "the name of a paddle", "hl.measure.quality")
-    simulated = isinstance(paddle, SimulatedPaddle)
     profile = profile or _profile_of(paddle)
-    on = "simulated paddle" if simulated else "simulated board" if paddle.url.startswith("sim://") else "board"
-    hand = str(paddle.hand or "nobody") if simulated else "a person's hand"
+    if isinstance(paddle, SimulatedPaddle):
+        on, held = "simulated paddle", str(paddle.hand or "nobody")
+    else:
+        on, held = ("simulated board", "nobody") if paddle.url.startswith("sim://") else ("board", "a person's hand")
     for one in found:
         if not isinstance(one, ZWidth | MeasuredImpedance | VelocityErrors):
             raise AnalysisError(
@@ -93,7 +94,7 @@ def paddle_quality(
         name,
         date or calendar.today().isoformat(),
         on,
-        "nobody" if on == "simulated board" else hand,
+        held,
         profile,
         tuple(_width(one) for one in found if isinstance(one, ZWidth)),
         _rendered(impedances[0]) if impedances else None,

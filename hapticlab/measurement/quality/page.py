@@ -61,7 +61,8 @@ def quality_page(quality: PaddleQuality) -> str:
         parts.append(section("Z-width and its two borders", picture(figure, told) + _widths(quality)))
     if quality.rendered is not None:
         told = "Grey bands: what a hand cannot tell from the ideal, as stated below."
-        parts.append(section("Rendered impedance", picture(plot_rendered(quality), told) + _rendered(quality)))
+        figure = plot_rendered(quality.rendered, quality.profile.b, quality.fractions)
+        parts.append(section("Rendered impedance", picture(figure, told) + _rendered(quality)))
     if quality.velocities:
         parts.append(section("Velocity estimators", _velocities(quality)))
     parts.append(section("How to read this page", bullets(NOTES)))

@@ -20,6 +20,7 @@ from .record_file import write_quality
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from ...base.annotations import Array, File
 
@@ -78,12 +79,12 @@ class Rendered(ShowsItself):
     radius: tuple[float, ...] = _in("N s/m")
 
     @property
-    def Z(self) -> Array:
+    def Z(self) -> NDArray[np.complex128]:
         """The rendered impedance [N s/m], complex."""
         return np.array(self.real) + 1j * np.array(self.imaginary)
 
     @property
-    def ideal(self) -> Array:
+    def ideal(self) -> NDArray[np.complex128]:
         """The impedance K/s + B that was meant [N s/m], complex."""
         return self.K / (2j * np.pi * np.array(self.frequency)) + self.B
 

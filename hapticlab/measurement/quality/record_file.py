@@ -6,7 +6,7 @@ import json
 import math
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...base.profile.profile_file import as_text
 from ...errors import AnalysisError
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 FORMAT, VERSION, SUFFIX = "hapticlab paddle quality", 1, ".json"
 #: bytes of a file, letters of a text, rows of a table, numbers of a row, and the largest of them
 LARGEST, LETTERS, ROWS, LONGEST, HUGE = 300_000, 100, 12, 200, 1e12
+#: borders that trials may leave undecided, null in a file
+UNDECIDED = ("K [N/m]", "rest [N/m]", "quiet [N/m]")
 TEXTS = ("name", "date", "on", "held")
 GIVE = "Give a file that quality.save() wrote."
 
@@ -91,7 +93,7 @@ def rows_of(kind: type, given: object, what: str, named: str) -> tuple:
     return tuple(row_of(kind, one, what, named) for one in given)
 
 
-def row_of(kind: type, given: object, what: str, named: str):
+def row_of(kind: type, given: object, what: str, named: str) -> Any:
     """Return one record of a class from a dict, each part of it checked."""
     known = {_key(f): f for f in fields(kind)}
     if not isinstance(given, dict) or set(given) != set(known):
@@ -120,14 +122,12 @@ def _checked(given, kind, key, named):
     if kind == "tuple[float, ...]":
         if not isinstance(given, list) or not 0 < len(given) <= LONGEST:
             raise refused(named, f"{key} must be a list of 1 to {LONGEST} numbers")
-        return tuple(_number(one, key, named) for one in given)
+        return tuple(math.nan if one is None and key in UNDECIDED else _number(one, key, named) for one in given)
     value = _number(given, key, named)
-    return int(value) if kind == "int" and not math.isnan(value) else value
+    return int(value) if kind == "int" else value
 
 
 def _number(given, key, named):
-    if given is None:
-        return math.nan
     if isinstance(given, bool) or not isinstance(given, int | float) or abs(given) > HUGE:
         raise refused(named, f"{key} must hold numbers below {HUGE:g} in magnitude")
     if key.startswith("frequency") and given <= 0:
