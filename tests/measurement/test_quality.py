@@ -122,6 +122,7 @@ DAMAGED = {
     "a profile without mass": (lambda held: held["profile"]["constants"].pop("m [kg]"), "m is missing"),
     "many rows": (lambda held: held.update(velocities=held["velocities"] * 50), "at most 12"),
     "an unknown frequency": (lambda held: held["rendered"]["frequency [Hz]"].__setitem__(0, None), "must hold numbers"),
+    "a wall that is none": (lambda held: held["rendered"].update({"K [N/m]": 0}), "no impedance to compare with"),
     "a frequency of 0": (lambda held: held["rendered"]["frequency [Hz]"].__setitem__(0, 0), "above 0 Hz"),
 }  # fmt: skip
 

@@ -170,6 +170,8 @@ def read_quality(path: File) -> PaddleQuality:
         raise refused(named, f"{texts['date']!r} is not a day such as 2026-11-20") from None
     widths = rows_of(Width, held["widths"], "widths", named)
     rendered = None if held["rendered"] is None else row_of(Rendered, held["rendered"], "rendered", named)
+    if rendered is not None and not (rendered.K >= 0 and rendered.K + abs(rendered.B) > 0):
+        raise refused(named, f"a wall of {rendered.K:g} N/m and {rendered.B:g} N s/m has no impedance to compare with")
     return PaddleQuality(
         **texts,
         profile=profile,
