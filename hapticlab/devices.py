@@ -13,6 +13,7 @@ A profile is a set of published or measured constants, and says which:
 Next: ``hl.connect()`` opens a board, ``hl.doctor()`` checks it, ``hl.identify.paddle`` measures its constants.
 """
 
+from .base.profile.drive_train import DriveTrain
 from .base.profile.paddle_profile import PaddleProfile
 from .course.drawings.drawing import drawing
 from .device.board.serial_paddle import SerialPaddle
@@ -23,6 +24,7 @@ from .device.simulated.simulated_paddle import SimulatedPaddle
 from .vocabulary import page
 
 __all__ = [
+    "DriveTrain",
     "Paddle",
     "PaddleProfile",
     "SerialPaddle",

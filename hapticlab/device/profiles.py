@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.arguments import what_is
+from ..base.profile.drive_train import DriveTrain
 from ..base.profile.estimate import Estimate
 from ..base.profile.paddle_profile import PaddleProfile
 from ..base.profile.profile_file import SUFFIX, read_profile
@@ -22,9 +23,38 @@ if TYPE_CHECKING:
     from ..base.annotations import File
 
 
-def _counts_per_metre(counts, *, pulley, sector, handle):
-    """Counts per metre of handle travel, of a sensor with so many counts a turn of the motor's pulley; radii in metres."""
-    return counts / (2 * math.pi * pulley * handle / sector)
+#: what no source of a Hapkit or of a paddle like it gives: the supply, the winding and the rotor are round numbers, and the
+#: torque constant is the published torque at full duty over the current of a motor at rest
+_MADE_UP = "supply, resistance and rotor illustrative, the torque constant from them and the torque at full duty"
+_ROTOR = 2e-7
+_HAPKIT_DRIVE = DriveTrain(
+    drum=0.004191, sector=0.073152, handle=0.065659, counts_per_turn=1840, torque_constant=0.02, resistance=8.0, supply=12.0,
+    rotor_inertia=_ROTOR,
+    source=(
+        "published Hapkit sketches for the radii, 0.165, 2.88 and 2.585 inch, and for 0.03 N m at full duty; 920 counts in half "
+        "a turn (KMA210, 5 to 95 % of an Uno's 10 bits). They give 12.85 um per count and 7.98 N, 0.4 and 0.3 % off the "
+        f"rounded 12.8 um and 8 N of the profile; {_MADE_UP}"
+    ),
+)  # fmt: skip
+_AS5048A_DRIVE = DriveTrain(
+    drum=0.005, sector=0.075, handle=0.08, counts_per_turn=16_384, torque_constant=0.0183, resistance=12.0, supply=12.0,
+    rotor_inertia=_ROTOR, source=f"the profile's sources; {_MADE_UP}",
+)  # fmt: skip
+_LONGHORN_DRIVE = DriveTrain(
+    drum=0.005, sector=0.075, handle=0.085, counts_per_turn=48, torque_constant=0.0167, resistance=12.0, supply=12.0,
+    rotor_inertia=_ROTOR, source=f"the profile's sources; {_MADE_UP}",
+)  # fmt: skip
+_SHIELD_DRIVE = DriveTrain(
+    drum=0.0042, sector=0.075, handle=0.07, counts_per_turn=2000, torque_constant=0.0147, resistance=15.0, supply=12.0,
+    rotor_inertia=_ROTOR, source=f"the profile's source for the radii; the torque too is illustrative; {_MADE_UP}",
+)  # fmt: skip
+_ETH_DRIVE = DriveTrain(
+    drum=0.0043, sector=0.075, handle=0.065, torque_constant=0.0538, resistance=10.6, rotor_inertia=1.58e-6,
+    source=(
+        "ETH Zurich teaching paddle (github.com/WilliamLinxw/Physical-Human-Robot-Interaction-Lab, Lin_Rohner_lab3/"
+        "Matlab_Simulink_Template/Parameters.m): radii by its drawings, motor by its data sheet; encoder and supply not included"
+    ),
+)  # fmt: skip
 
 
 #: nothing here was measured by this package on anyone's device: a lab identifies m, b and friction. The KMA210's lag and
@@ -39,6 +69,7 @@ hapkit = PaddleProfile(
     force_full=8.0,
     carrier=62_500,
     wiring="hapkit",
+    drive=_HAPKIT_DRIVE,
     nominal=True,
     source=(
         "published Hapkit sketches and dimensions for 12.8 um per count and 3.3 N (the lower of the published peaks, "
@@ -49,13 +80,14 @@ hapkit_as5048a = PaddleProfile(
     name="hapkit_as5048a",
     m=0.03,
     b=0.10,
-    counts_per_metre=_counts_per_metre(16_384, pulley=0.005, sector=0.075, handle=0.08),
+    counts_per_metre=16_384 / (2 * math.pi * _AS5048A_DRIVE.jacobian),
     force_max=3.3,
-    force_full=0.0183 / (0.005 * 0.08 / 0.075),
+    force_full=0.0183 / _AS5048A_DRIVE.jacobian,
     sensor_delay=100e-6,
-    sensor_noise=0.06 / 360 / _counts_per_metre(1, pulley=0.005, sector=0.075, handle=0.08),
+    sensor_noise=math.radians(0.06) * _AS5048A_DRIVE.jacobian,
     carrier=62_500,
     wiring="hapkit_as5048a",
+    drive=_AS5048A_DRIVE,
     nominal=True,
     source=(
         "sketch of Stanford's ME327 (github.com/13strings/me327, helpers.h) for 16384 counts a turn, chip select D10, PWM D5, "
@@ -67,12 +99,13 @@ longhorn = PaddleProfile(
     name="longhorn",
     m=0.04,
     b=0.15,
-    counts_per_metre=_counts_per_metre(48, pulley=0.005, sector=0.075, handle=0.085),
+    counts_per_metre=48 / (2 * math.pi * _LONGHORN_DRIVE.jacobian),
     rounding="floor",
     force_max=2.4,
-    force_full=0.0167 / (0.005 * 0.085 / 0.075),
+    force_full=0.0167 / _LONGHORN_DRIVE.jacobian,
     carrier=31_372,
     wiring="longhorn_d11",
+    drive=_LONGHORN_DRIVE,
     nominal=True,
     source=(
         "Longhorn Hapkit of UT Austin (github.com/connormmckelvey/Longhorn-Hapkit, firmware/1DOF/1_basic.cpp) for 48 counts a "
@@ -84,11 +117,12 @@ motor_shield = PaddleProfile(
     name="motor_shield",
     m=0.04,
     b=0.15,
-    counts_per_metre=_counts_per_metre(2000, pulley=0.0042, sector=0.075, handle=0.07),
+    counts_per_metre=2000 / (2 * math.pi * _SHIELD_DRIVE.jacobian),
     force_max=2.0,
     force_full=3.0,
     carrier=7_812,
     wiring="motor_shield",
+    drive=_SHIELD_DRIVE,
     nominal=True,
     source=(
         "radii of a Hapkit 3.0 on an Uno with a motor shield, 4.2, 75 and 70 mm (github.com/bgromov/Hapkit3.0, hapkit3.h); "
@@ -99,6 +133,7 @@ eth = PaddleProfile(
     name="eth",
     m=0.166,
     b=0.057,
+    drive=_ETH_DRIVE,
     nominal=True,
     source=(
         "ETH Zurich teaching paddle, published inertias, motor damping and pulley ratio (github.com/WilliamLinxw/"

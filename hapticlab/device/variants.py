@@ -46,7 +46,8 @@ def rough(kind: PaddleProfile) -> PaddleProfile:
 def coarse(kind: PaddleProfile) -> PaddleProfile:
     """A paddle with an encoder of 100 um per count, or half the counts of its kind where these are as wide already."""
     counts = COARSE if kind.counts_per_metre is None else min(COARSE, kind.counts_per_metre / COARSER)
-    return replace(kind, counts_per_metre=counts, **_about(kind, "coarse", "an illustrative encoder"))
+    turn = None if kind.drive is None else replace(kind.drive, counts_per_turn=2 * math.pi * kind.drive.jacobian * counts)
+    return replace(kind, counts_per_metre=counts, drive=turn, **_about(kind, "coarse", "an illustrative encoder"))
 
 
 def slow(kind: PaddleProfile) -> PaddleProfile:

@@ -10,7 +10,7 @@ from hapticlab.device.variants import TYPICAL
 
 CHANGES = {
     "rough": {"coulomb", "delay", "sensor_delay"},
-    "coarse": {"counts_per_metre"},
+    "coarse": {"counts_per_metre", "drive"},
     "slow": {"T", "delay"},
 }
 ABOUT = {"name", "source", "estimates"}

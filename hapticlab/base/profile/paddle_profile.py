@@ -10,6 +10,7 @@ from ..arguments import choice
 from ..facts import card
 from ..shows_itself import ShowsItself
 from .constants import CONSTANTS, ROUNDINGS, check_duties, in_range, unit_of
+from .drive_train import DriveTrain
 from .estimate import Estimate
 from .prediction import Prediction, predicted
 from .profile_file import write_profile
@@ -70,6 +71,8 @@ class PaddleProfile(ShowsItself):
         Computational delay [s].
     estimates : tuple of Estimate
         Of the constants that were measured: the interval of each, and its source.
+    drive : DriveTrain or None
+        What lies between motor and handle, from published numbers; limits and simulated paddles do not read it.
 
     Raises
     ------
@@ -105,6 +108,7 @@ class PaddleProfile(ShowsItself):
     wiring: str = ""
     delay: float = 0.0
     estimates: tuple[Estimate, ...] = ()
+    drive: DriveTrain | None = None
 
     def __post_init__(self) -> None:
         for name in CONSTANTS:
@@ -114,6 +118,8 @@ class PaddleProfile(ShowsItself):
                 object.__setattr__(self, name, value)
         check_duties(self, PaddleError)
         choice("rounding", self.rounding, ROUNDINGS, error=PaddleError)
+        if not isinstance(self.drive, DriveTrain | None):
+            raise PaddleError(f"drive = {self.drive!r}; the profile {self.name} needs an hl.devices.DriveTrain, or None.")
         for estimate in self.estimates:
             _check_estimate(self, estimate)
         order = list(CONSTANTS)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ...errors import HapticlabError, PaddleError
 from .constants import CONSTANTS, unit_of
+from .drive_train import from_data
 
 FORMAT, VERSION = "hapticlab paddle profile", 1
 SUFFIX = ".json"
@@ -64,7 +65,8 @@ def as_text(profile):
             constants[f"{name} [{unit_of(name)}]"] = {"value": value, **told}
     about = {"format": FORMAT, "version": VERSION, "nominal": profile.nominal}
     texts = {name: getattr(profile, name) for name in _TEXTS}
-    return json.dumps({**about, **texts, "constants": constants}, indent=1, ensure_ascii=False) + "\n"
+    drive = {"drive": profile.drive.as_data()} if profile.drive else {}
+    return json.dumps({**about, **texts, "constants": constants, **drive}, indent=1, ensure_ascii=False) + "\n"
 
 
 def parsed(text, named):
@@ -77,7 +79,7 @@ def parsed(text, named):
             f"{named}: version {held.get('version')!r} of the format; this hapticlab reads version {VERSION}. Update hapticlab, "
             "or save the profile again."
         )
-    _require_keys(held, _KEYS, named, "the file")
+    _require_keys({key: part for key, part in held.items() if key != "drive"}, _KEYS, named, "the file")
     if not isinstance(held["nominal"], bool) or not isinstance(held["constants"], dict):
         raise _refused(named, '"nominal" must be true or false, and "constants" a list of constants by name')
     told = {name: _text(held[name], name, named) for name in _TEXTS}
@@ -95,7 +97,19 @@ def parsed(text, named):
             )
     if lacking := [name for name in ("m", "b", "T") if name not in values]:
         raise _refused(named, f"{lacking[0]} is missing")
-    return {**told, "nominal": held["nominal"], **values, "estimates": estimates}
+    return {**told, "nominal": held["nominal"], **values, "estimates": estimates, "drive": _drive(held, named)}
+
+
+def _drive(held, named):
+    """The drive train of a file, None where it holds none; its source is a text as others are."""
+    if "drive" not in held:
+        return None
+    try:
+        drive = from_data(held["drive"])
+    except PaddleError as problem:
+        raise _refused(named, str(problem).rstrip(".")) from None
+    _text(drive.source, "source of the drive", named)
+    return drive
 
 
 def _loaded(text, named):

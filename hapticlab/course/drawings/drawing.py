@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...base.drawing import bundle, svg
 from ...device.wirings import BUILDS
 from ...errors import CourseError
-from . import loop, paddle, sample_and_hold, signs
+from . import drive, loop, paddle, sample_and_hold, signs
 from .pen import INK
 from .wiring import WiringSheet
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-SHEETS: dict[str, Any] = {"paddle": paddle, "loop": loop, "sample_and_hold": sample_and_hold, "signs": signs}
+SHEETS: dict[str, Any] = {"paddle": paddle, "drive": drive, "loop": loop, "sample_and_hold": sample_and_hold, "signs": signs}
 SHEETS |= {f"wiring {name}": WiringSheet(build) for name, build in BUILDS.items()}
 
 
@@ -73,10 +73,11 @@ def drawing(name: str) -> Drawing:
 
     Parameters
     ----------
-    name : {"paddle", "loop", "sample_and_hold", "signs", "wiring hapkit", ...}
-        ``"paddle"``: its parts. ``"loop"``: sensor, computer and motor, with the forces of Fig. 23.5. ``"sample_and_hold"``:
-        position and held force over time, as in Fig. 23.6. ``"signs"``: the sign convention on one card. ``"wiring hapkit"``
-        and the others of hapticlab.device.wirings.BUILDS: every wire of a paddle, from pin to terminal.
+    name : {"paddle", "drive", "loop", "sample_and_hold", "signs", "wiring hapkit", ...}
+        ``"paddle"``: its parts. ``"drive"``: handle, sector, drum, motor, amplifier and sensor. ``"loop"``: sensor, computer
+        and motor, with the forces of Fig. 23.5. ``"sample_and_hold"``: position and held force over time, as in Fig. 23.6.
+        ``"signs"``: the sign convention on one card. ``"wiring hapkit"`` and the others of hapticlab.device.wirings.BUILDS:
+        every wire of a paddle, from pin to terminal.
 
     Returns
     -------

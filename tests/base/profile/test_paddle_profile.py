@@ -26,7 +26,7 @@ def test_profile_says_what_it_is():
 
 
 def test_the_table_of_constants_is_that_of_the_page():
-    texts = {"name", "rounding", "nominal", "source", "wiring", "estimates"}
+    texts = {"name", "rounding", "nominal", "source", "wiring", "estimates", "drive"}
     assert {field.name for field in dataclasses.fields(PaddleProfile)} - texts == set(CONSTANTS)
     told = documented(PaddleProfile)
     assert {name: unit for name, (unit, _) in CONSTANTS.items()} == {name: told[name][0] or "1" for name in CONSTANTS}

@@ -62,6 +62,12 @@ def renamed(old, new):
     return lambda held: json.dumps(held).replace(old, new).encode()
 
 
+def driven(key, value):
+    """The bytes of a file whose drive holds one quantity more."""
+    radii = {"drum [m]": 0.005, "sector [m]": 0.075, "handle [m]": 0.08}
+    return lambda held: json.dumps({**held, "drive": {**radii, key: value}}).encode()
+
+
 HOSTILE = {
     "empty": (lambda held: b"", "it is damaged"),
     "cut": (lambda held: json.dumps(held).encode()[:200], "it is damaged"),
@@ -98,6 +104,12 @@ HOSTILE = {
     "constants as list": (changed(constants=[]), '"nominal" must be true or false'),
     "constant as number": (changed(m=0.03), "needs a value, or all of"),
     "rounding": (changed(rounding="up"), "rounding = 'up'"),
+    "drive of another kind": (lambda held: json.dumps({**held, "drive": 3}).encode(), "what is not a list of quantities"),
+    "drive without a radius": (lambda held: json.dumps({**held, "drive": {"drum [m]": 0.005}}).encode(), "has no sector"),
+    "drive in another unit": (driven("drum [mm]", 5), r"its drive holds 'drum \[mm\]'; the quantities are drum \[m\]"),
+    "drive turned round": (driven("drum [m]", -0.005), "drum = -0.005 m; a drive train needs drum > 0"),
+    "drive as text": (driven("supply [V]", "12 V"), r"supply \[V\] of its drive is not a number"),
+    "drive with a long source": (driven("source", "a" * 2000), "the source of the drive must be a text of one line"),
     "duties": (renamed('"duty_dead [1]": {"value": 0.0}', '"duty_dead [1]": {"value": 0.7}'), "duty_dead = 0.7"),
 }
 
