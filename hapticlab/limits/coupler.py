@@ -81,16 +81,18 @@ class CouplerDesign(ShowsItself):
         late = f", delay {1e3 * self.delay:g} ms" if self.delay else ""
         at = stopped(self.frequency)
         return (
-            f"coupler k_c = {self.k_c:.6g} N/m, b_c = {self.b_c:.6g} N s/m: stable with every passive hand and every passive "
-            f"environment on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; stopped {at}"
+            f"coupler k_c = {self.k_c:.6g} N/m, b_c = {self.b_c:.6g} N s/m: stable with every passive hand and every environment "
+            f"that is passive at the sample rate, on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; stopped {at}"
         )
 
 
 def coupler_design(device: AnyDevice, *, b_c: float | None = None) -> CouplerDesign:
     """Design a virtual coupler for an impedance display by Llewellyn's criterion (after Adams and Hannaford 1999).
 
-    Exact for the sampled device in any passive hand; the environment must be passive at the sample rate, which explicit
-    integration is not (:func:`hapticlab.passivity.port` asks that of a scene as it is compiled).
+    Exact for the sampled device in any passive hand, if the environment is passive at the sample rate, as bodies are that are
+    stepped by backward Euler together with their coupler. A compiled scene is not, not even one solved without error: its force
+    is late, and where a body resonates on the coupler a device needs about k_c**2 tau**2/(4 b_c), tau = T/2 and the delay. The
+    larger of both needs counts; :func:`hapticlab.passivity.port` has that of a scene.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ LAB = Lab(
     minutes=120,
     exercises=(
         Exercise("prediction_factor", kind="prediction", asks="by what factor the compensated handle coasts farther"),
-        Exercise("prediction_over", kind="prediction", asks="what happens at 120 % of the dry friction"),
+        Exercise("prediction_over", kind="prediction", asks="what happens at 150 % of the dry friction"),
         Exercise("prediction_free_air", kind="prediction", asks="how many of 100 N/m remain"),
         Exercise(
             "compensating",
