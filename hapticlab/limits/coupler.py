@@ -81,8 +81,9 @@ class CouplerDesign(ShowsItself):
         late = f", delay {1e3 * self.delay:g} ms" if self.delay else ""
         at = stopped(self.frequency)
         return (
-            f"coupler k_c = {self.k_c:.6g} N/m, b_c = {self.b_c:.6g} N s/m: stable with every passive hand and every environment "
-            f"that is passive at the sample rate, on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; stopped {at}"
+            f"coupler k_c = {self.k_c:.6g} N/m, b_c = {self.b_c:.6g} N s/m: stable with every passive hand and every "
+            f"environment that is passive at the sample rate, on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; "
+            f"stopped {at}"
         )
 
 
