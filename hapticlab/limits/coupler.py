@@ -82,8 +82,8 @@ class CouplerDesign(ShowsItself):
         at = stopped(self.frequency)
         return (
             f"coupler k_c = {self.k_c:.6g} N/m, b_c = {self.b_c:.6g} N s/m: stable with every passive hand and every "
-            f"environment that is passive at the sample rate, on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; "
-            f"stopped {at}"
+            f"environment that is passive at the sample rate, on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} "
+            f"ms{late}; stopped {at}"
         )
 
 
