@@ -18,6 +18,7 @@ from .base.profile.paddle_profile import PaddleProfile
 from .course.drawings.drawing import drawing
 from .device.board.serial_paddle import SerialPaddle
 from .device.paddle import Paddle
+from .device.pair.two_paddles import TwoPaddles
 from .device.profiles import profile
 from .device.setup.practice import practice_board
 from .device.simulated.simulated_paddle import SimulatedPaddle
@@ -29,6 +30,7 @@ __all__ = [
     "PaddleProfile",
     "SerialPaddle",
     "SimulatedPaddle",
+    "TwoPaddles",
     "drawing",
     "practice_board",
     "profile",

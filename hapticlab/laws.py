@@ -19,6 +19,7 @@ from .rendering.for_board import wall_for_board
 from .rendering.hybrid import hybrid_wall
 from .rendering.predictive import predictive_wall
 from .rendering.wall_laws import wall_law
+from .scene.laws.bilateral import Engagement, bilateral_coupling
 from .scene.laws.chapter_laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
 from .scene.laws.compensation import damping_compensation
 from .scene.laws.entry_pulse import Entry, braking_pulse, friction_pulse
@@ -38,12 +39,14 @@ __all__ = [
     "BackwardDifferenceSpring",
     "Credit",
     "EllisSpring",
+    "Engagement",
     "Entry",
     "HalfSampleSpring",
     "LinearLaw",
     "Pairs",
     "SampledSpring",
     "SpringLaw",
+    "bilateral_coupling",
     "braking_pulse",
     "damping_compensation",
     "deadbeat_wall",

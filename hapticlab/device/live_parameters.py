@@ -135,9 +135,17 @@ def _within(parameter, value, notes):
 
 def send(exchange, program, numbers):
     """Set parameters by name; return the tick after which they hold."""
+    return exchange.command("SET", len(numbers), rest=_as_bytes(program, numbers))
+
+
+def tell(exchange, program, numbers):
+    """Set parameters by name and wait for no answer; return whether they were sent."""
+    return exchange.tell("SET", len(numbers), rest=_as_bytes(program, numbers))
+
+
+def _as_bytes(program, numbers):
     position = {name: k for k, name in enumerate(named_values(program))}
-    rest = b"".join(bytes([position[name]]) + np.float32(value).tobytes() for name, value in numbers.items())
-    return exchange.command("SET", len(numbers), rest=rest)
+    return b"".join(bytes([position[name]]) + np.float32(value).tobytes() for name, value in numbers.items())
 
 
 def in_portions(numbers):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ...errors import HapticlabError
 from ..link.messages import STATES
-from ..live_parameters import checked, in_portions, named_values
+from ..live_parameters import checked, in_portions, named_values, tell
 from .greeting import explain_silence
 from .homing import state_flag
 from .run import decimation, fault_words
@@ -131,6 +131,11 @@ class Streaming:
             since = self._run.changes[-1][0]
         self.program = replace(self.program, values=tuple((named_values(self.program) | numbers).values()))
         return since
+
+    def hear(self, **numbers):
+        """Set what another paddle sends, in SI, unchecked, unrecorded and unanswered: what is lost, the next one replaces."""
+        if self.motor:
+            tell(self.paddle.exchange, self.program, numbers)
 
     def hold(self, held):
         """A hand of flesh takes the handle and lets go of it by itself."""

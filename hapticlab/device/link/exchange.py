@@ -112,6 +112,20 @@ class Exchange:
             raise LinkError(f"the board rejected {message}: {name}: {meaning}", name)
         return said["tick"]
 
+    def tell(self, message, *values, rest=b""):
+        """Send a request once and wait for no reply; return False, with nothing sent, where another one is under way.
+
+        A board takes one frame at a time, so this is for what may be lost and comes again at once.
+        """
+        if not self._turn.acquire(blocking=False):
+            return False
+        try:
+            self._require_my_time()
+            self._send(encode(message, self._next_sequence(message), *values, rest=rest, session=self.session))
+        finally:
+            self._turn.release()
+        return True
+
     def refresh(self):
         """Ask for the board's state and return its fields."""
         return self.ask("STATUS", self.session).fields

@@ -27,6 +27,8 @@ class Stepping:
     x, v : float
         Position [m] and velocity [m/s] at the first sample.
     engine : {"auto", "llvm", "wasm", "interpreter"}
+    own_hand : bool
+        True leaves the hand as it is, with its push, also where it has no spring; only a moving intent is then told.
     **options
         Of hapticlab.compile.
 
@@ -62,19 +64,20 @@ class Stepping:
 
     kind, begun, motor, waits = "simulated", True, False, ""
 
-    def __init__(self, paddle, scene, *, x=0.0, v=0.0, engine="auto", **options):
+    def __init__(self, paddle, scene, *, x=0.0, v=0.0, engine="auto", own_hand=False, **options):
         self.program = paddle.program(scene, **options)
-        self.paddle, self._engine, self._begin = with_grip(paddle), engine, paddle.plant_values(x, v)[-2:]
+        self.paddle = paddle if own_hand else with_grip(paddle)
+        self._engine, self._begin = engine, paddle.plant_values(x, v)[-2:]
         self.held, self._loops, self.period = True, {}, self.paddle.T
         self.start()
 
     def start(self):
         """Begin anew: the handle where it was at first, the scene's states at their starts, the values as they are now."""
-        self._states, self.ticks, self.fault, self.place = None, 0, None, self._begin[0]
-        hand = self.paddle.hand
+        self._states, self.ticks, self.fault, self.place, self._heard = None, 0, None, self._begin[0], {}
+        shaken = self.paddle.hand.push_noise if self.paddle.hand else 0.0
         self._noise = [
             (deviation, np.random.default_rng([self.paddle.seed, stream]))
-            for stream, deviation in enumerate((self.paddle.noise, hand.push_noise))
+            for stream, deviation in enumerate((self.paddle.noise, shaken))
         ]
 
     def advance(self, intent):
@@ -128,6 +131,10 @@ class Stepping:
         self._take(self.check(**values))
         return self.ticks * self.paddle.T
 
+    def hear(self, **numbers):
+        """Set what another paddle sends, in SI, unchecked and unrecorded, until the next start."""
+        self._heard |= numbers
+
     def hold(self, held):
         """Take the handle, or let go of it; position and velocity stay as they are at that tick."""
         if held != self.held and self._states is not None:
@@ -178,13 +185,17 @@ class Stepping:
         return self._loops[held]
 
     def _parameters(self, loop):
-        return *self.program.values, *loop.plant_values
+        known = self.program.values
+        if self._heard:
+            known = [self._heard.get(c.name, value) for c, value in zip(self.program.parameters, known, strict=True)]
+        return *known, *loop.plant_values
 
     def _inputs(self, intent):
         """Return the linked program's inputs, in the order of SimulatedPaddle.inputs."""
         ticks, columns = len(intent) - 1, []
-        if self.held:
-            columns += [intent[:-1], (intent[1:] - intent[:-1]) / self.paddle.T]
+        if self.held and self.paddle.plant.ramp:
+            columns += [intent[:-1]] if self.paddle.plant.spring else []
+            columns.append((intent[1:] - intent[:-1]) / self.paddle.T)
         for (deviation, draw), there in zip(self._noise, (True, self.held), strict=True):
             if deviation and there:
                 columns.append(deviation * draw.standard_normal(ticks))
