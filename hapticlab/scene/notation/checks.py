@@ -63,6 +63,11 @@ def equations(eom):
                 f"eom contains {equation.name}, which is not an equation. Add it to the equations of its bodies: "
                 "hl.mechanics.lagrange(L, contacts=[...])"
             )
+        if equation in (sp.true, sp.false):
+            raise SceneError(
+                f"eom contains {equation}; one side of this sp.Eq may be a condition, which is not a number. Write "
+                "sp.Eq(s(n), hl.when(condition, 1, 0))"
+            )
         if not isinstance(equation, sp.Eq):
             raise SceneError(
                 f"eom contains {equation!r}; needs equations, sp.Eq(left side, right side), or hl.mechanics.lagrange(...)"

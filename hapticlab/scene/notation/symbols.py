@@ -96,6 +96,7 @@ class _Unapplied(FunctionClass):
         raise SignalError(f"{name} is a function of time; write {name}(n) for its sample{or_at}")
 
     __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = __neg__ = _refuse
+    __lt__ = __le__ = __gt__ = __ge__ = _refuse
 
 
 class _Sampled:

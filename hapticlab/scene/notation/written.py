@@ -86,4 +86,9 @@ def condition(given):
         compared = "== and != compare at once; write sp.Eq(a, b) or sp.Ne(a, b)"
         cure = compared if isinstance(given, bool) else "write one, such as x(n) >= x_o"
         raise SceneError(f"{given!r} is not a condition; {cure}")
+    if given == sp.false:
+        raise SceneError(
+            "the condition is False for every motion. A part of it may have been compared at once by Python's ==, as in "
+            "(s(n-1) == 1) & (x(n) > x_o); write sp.Eq(s(n-1), 1)"
+        )
     return given

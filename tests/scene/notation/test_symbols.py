@@ -112,8 +112,11 @@ def test_coordinates_that_differ_only_in_their_start_are_told_apart():
     assert one != other
 
 
-@pytest.mark.parametrize("wrong", [lambda k, y: k * y, lambda k, y: y - k, lambda k, y: -y, lambda k, y: 1 / y])
-def test_arithmetic_on_a_function_that_is_not_applied_is_refused(wrong):
+@pytest.mark.parametrize(
+    "wrong",
+    [lambda k, y: k * y, lambda k, y: y - k, lambda k, y: -y, lambda k, y: 1 / y, lambda k, y: y > k, lambda k, y: k >= y],
+)
+def test_arithmetic_and_comparison_on_a_function_that_is_not_applied_is_refused(wrong):
     k = hl.parameters("k", units="N/m")
     for y in (hl.x, hl.v, hl.signal("y", unit="m")):
         with pytest.raises(hl.errors.SignalError, match=rf"{y.__name__} is a function of time; write {y.__name__}\(n\)"):
