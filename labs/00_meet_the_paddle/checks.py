@@ -9,6 +9,13 @@ ONLY_ON = (
     "does not average out."
 )
 SCALE = {"duty": [0, 0.237, 0.335, 0.411, 0.474], "grams": [2, 42, 82, 122, 163]}
+#: J = 3 mm/rad, 10 N/A, at most 2 A
+DRIVE = {"drum": 0.004, "sector": 0.08, "handle": 0.06, "torque_constant": 0.03, "supply": 12.0, "resistance": 6.0}
+UPSIDE_DOWN = (
+    "The ratio of the radii is upside down. The drum is smaller than the sector, so it turns further than the handle and needs "
+    "less torque."
+)
+RIM = "The fingers hold the handle at r_h, not at the rim of the sector. The Jacobian is r_d r_h/r_s."
 
 LAB = Lab(
     number="00",
@@ -87,7 +94,7 @@ LAB = Lab(
         ),
         Exercise(
             "sign_evidence",
-            points=2,
+            points=1,
             asks="Z, the sum of the signed work of all intervals over the root of the sum of its squares",
             rtol=1e-5,
             cases=(
@@ -146,6 +153,50 @@ LAB = Lab(
             ),
             hint="Over which variable do the readings lie on a line? Which constant of this line does the question ask for?",
             matters="The program computes newtons, but the motor takes a duty. This number connects the two.",
+        ),
+        Exercise(
+            "motor_current",
+            points=1,
+            asks="the current [A] for each force at the handle [N], within what the supply can drive",
+            rtol=1e-5,
+            cases=(
+                Case(
+                    {"force": [0.5, -2.0], **DRIVE},
+                    [0.05, -0.2],
+                    unit="A",
+                    slips={
+                        (2.0, -2.0): UPSIDE_DOWN,
+                        (20.0, -80.0): UPSIDE_DOWN,
+                        (0.088888889, -0.355555556): RIM,
+                        (0.066666667, -0.266666667): RIM,
+                        (1.0, -4.0): "That is the torque at the pivot. The drum is smaller than the sector: multiply by r_d/r_s.",
+                        (1.0, -2.0): "That is the torque at the pivot. The drum is smaller than the sector: multiply by r_d/r_s.",
+                        (0.0015, -0.006): "That is the torque in N m. The torque constant k_t is torque per ampere.",
+                        (
+                            4.5e-5,
+                            -1.8e-4,
+                        ): "You multiplied by k_t. The torque is k_t times the current, so divide the torque by k_t.",
+                        (0.3, -1.2): "That is the voltage R i. The question asks for the current.",
+                        (0.05, 0.2): "A negative force needs a negative current. Keep the sign.",
+                    },
+                ),
+                Case(
+                    {"force": [-40.0, 10.0, 25.0], **DRIVE},
+                    [-2.0, 1.0, 2.0],
+                    unit="A",
+                    slips={
+                        (
+                            -4.0,
+                            1.0,
+                            2.5,
+                        ): "The supply drives at most V/R through the winding, however large the force is that you ask for.",
+                        (-4.0, 1.0, 2.0): "The limit V/R holds for both signs of the current.",
+                        (-12.0, 1.0, 12.0): "A current is limited by V/R, in amperes. V is a voltage.",
+                    },
+                ),
+            ),
+            hint="Which torque does the force need at the drum, and which current makes this torque? What limits the current?",
+            matters="Every force that you feel is a current. Where the current ends, the wall ends.",
         ),
         Exercise(
             "felt_stiffness",

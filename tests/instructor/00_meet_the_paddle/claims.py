@@ -45,7 +45,15 @@ def same_stiffness(lab):
     return abs(lab.felt_stiffness(log.x, log.F) / 300 - 1) < 1e-3
 
 
+def agrees_with_its_drive(lab):
+    """One count and the force at full duty are those of the profile, to a percent, and the largest force asked is too much."""
+    drive, profile = lab.drive, lab.my_paddle
+    count = abs(drive.metres_per_count * profile.counts_per_metre - 1) < 0.01
+    return count and abs(drive.force_full / profile.force_full - 1) < 0.01 and lab.currents[-1] == drive.current_full
+
+
 CLAIMS = [
+    ("what one count and the largest current give at the handle", agrees_with_its_drive, "does not know its whole drive"),
     ("The handle stops before it reaches the ring, because the wall pushes back", before_the_ring, ""),
     (
         'Each line that is not "ok" ends with what to do',

@@ -9,6 +9,7 @@ def cases(random):
         "handle_position": lambda: [_stops(random, turned) for turned in (False, True, False)],
         "sign_evidence": lambda: [_tosses(random) for _ in range(3)],
         "force_full": lambda: [_scale(random) for _ in range(3)],
+        "motor_current": lambda: [_drive(random) for _ in range(3)],
         "felt_stiffness": lambda: [_spring(random) for _ in range(2)],
         "limits": lambda: [
             {
@@ -39,6 +40,21 @@ def _scale(random):
     duty = np.linspace(0, random.uniform(0.4, 0.7), 6)
     grams = random.uniform(-8, 8) + random.uniform(4, 9) / 9.80665e-3 * duty**2 + random.normal(0, 0.5, 6)
     return {"duty": duty.tolist(), "grams": grams.round().tolist()}
+
+
+def _drive(random):
+    """A drive, and forces of both signs of which about half are more than it can give."""
+    built = {
+        "drum": random.uniform(0.003, 0.007),
+        "sector": random.uniform(0.06, 0.09),
+        "handle": random.uniform(0.05, 0.1),
+        "torque_constant": random.uniform(0.01, 0.06),
+        "supply": random.uniform(5, 24),
+        "resistance": random.uniform(2, 15),
+    }
+    jacobian = built["drum"] * built["handle"] / built["sector"]
+    most = built["supply"] / built["resistance"] * built["torque_constant"] / jacobian
+    return {"force": (most * random.uniform(-2, 2, 6)).tolist(), **built}
 
 
 def _spring(random):

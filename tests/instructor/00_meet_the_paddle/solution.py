@@ -23,6 +23,12 @@ def force_full(duty, grams):
     return slope
 
 
+def motor_current(force, drum, sector, handle, torque_constant, supply, resistance):
+    """Return the current [A]: the Jacobian makes the torque, the torque constant the current, the winding its limit."""
+    most = supply / resistance
+    return np.clip(force * drum * handle / sector / torque_constant, -most, most)
+
+
 def felt_stiffness(x, F):
     """Return the stiffness of the best line through the origin [N/m]."""
     return np.sum(F * x) / np.sum(x * x)

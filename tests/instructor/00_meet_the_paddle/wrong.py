@@ -8,6 +8,11 @@ WRONG = [
     ("sign_evidence", lambda asked, moved, on: np.sum(asked * moved) / np.sqrt(np.sum((asked * moved) ** 2))),
     ("force_full", lambda duty, grams: np.polyfit(duty, grams * 9.80665e-3, 1)[0]),
     ("force_full", lambda duty, grams: np.polyfit(duty**2, grams * 9.80665, 1)[0]),
+    ("motor_current", lambda force, drum, sector, handle, torque_constant, supply, resistance:
+        np.clip(force * handle * sector / drum / torque_constant, -supply / resistance, supply / resistance)),
+    ("motor_current", lambda force, drum, sector, handle, torque_constant, supply, resistance:
+        force * drum * handle / sector / torque_constant),
+    ("motor_current", lambda force, drum, sector, handle, torque_constant, supply, resistance: force * drum / torque_constant),
     ("felt_stiffness", lambda x, F: np.mean(F / x)),
     ("limits", lambda k, metres_per_count, force_max, T: {
         "reach": k / force_max, "force_step": k * metres_per_count, "speed_step": metres_per_count / T}),
