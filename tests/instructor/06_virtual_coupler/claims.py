@@ -43,7 +43,7 @@ CLAIMS = [
     (
         "At four times the design limit the free handle chatters",
         lambda lab: lab.set_free[4] > 1,
-        "hides the difference",
+        "hide the difference",
     ),
-    ("In the pinch the pendulum stays calm", lambda lab: lab.pinched[4] < 0.2, "hides the difference"),
+    ("In the pinch the pendulum stays calm", lambda lab: lab.pinched[4] < 0.2, "hide the difference"),
 ]
