@@ -11,7 +11,7 @@ def chatters(lab, law):
 CLAIMS = [
     ("The handle chatters under Eq. (23.1).", lambda lab: chatters(lab, "Eq. (23.1)"), FRICTION),
     ("**Half a period ahead is not enough**", lambda lab: chatters(lab, "Eq. (23.5)"), FRICTION),
-    ("At your $s$ it comes to rest within two counts.", lambda lab: lab.moves["your s"] < 2.1e3 * lab.count, ""),
+    ("At your $s$ a few counts are left at most.", lambda lab: lab.moves["your s"] < 8e3 * lab.count, ""),
     (
         "**On a paddle with an encoder the factor of forty is gone**",
         lambda lab: 0 < lab.factor < 5,
