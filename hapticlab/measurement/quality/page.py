@@ -31,8 +31,8 @@ SHOWN = {
 }  # fmt: skip
 NOTES = (
     "Stiffness: differences below 23 % are taken as not felt (L. A. Jones and I. W. Hunter, Exp. Brain Res. 79 (1990) 150). "
-    "Damping: below 34 % (the same authors, Exp. Brain Res. 94 (1993) 343). In both studies people adjusted one motor until it "
-    "felt like another; a forced choice gives smaller fractions.",
+    "Damping: below 34 % (the same authors, Exp. Brain Res. 94 (1993) 343, for 2 N s/m and more, which is above the damping of "
+    "a paddle). In both studies people adjusted one motor until it felt like another; a forced choice gives smaller fractions.",
     "Assumptions of this page: the 23 % are applied to the whole impedance at each frequency, and the 34 % to the damping of "
     "paddle and wall together, although nobody judged these on a paddle.",
     "The borders are outcomes of trials in one hand, from the starts that were tried. Another hand or grip has other borders. A "

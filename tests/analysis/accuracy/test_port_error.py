@@ -31,8 +31,8 @@ def test_a_force_that_is_right_at_the_samples_is_wrong_between_them():
     # the last point of a period that is looked at is 7/8 T after the sample, where F has moved by F' 7/8 T at most
     expected = K * A * OMEGA * 7 / 8 * T
     assert error.hold == pytest.approx(expected, rel=1e-3)
-    # mean over a period of (F' j T/8)^2, j = 0..7, and over a sine of F'^2
-    assert error.hold_rms == pytest.approx(K * A * OMEGA * T * np.sqrt(17.5) / 8 / np.sqrt(2), rel=0.05)
+    # mean over a period of (F' u)^2, u = 0..T, and over a sine of F'^2
+    assert error.hold_rms == pytest.approx(K * A * OMEGA * T / np.sqrt(3) / np.sqrt(2), rel=0.05)
     assert error.peak == pytest.approx(K * A, rel=1e-6)
 
 

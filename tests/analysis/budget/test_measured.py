@@ -27,20 +27,20 @@ def test_margin_of_a_filtered_wall_is_that_of_the_formula(T, tau):
 
 
 @pytest.mark.always("None")
-@pytest.mark.parametrize("encoder", [None, 5_000])
-def test_error_of_a_spring_is_that_of_its_held_samples(encoder):
+@pytest.mark.parametrize(("encoder", "T"), [(None, 1e-3), (5_000, 1e-3), (None, 5e-4)])
+def test_error_of_a_spring_is_that_of_its_held_samples(encoder, T):
     """A spring that is held: K times the motion since the sample, and with an encoder K times the missing part of a count."""
-    K, T, per = 300.0, 1e-3, 8
+    K, per = 300.0, 100
     motion = hl.methods.HandleMotion("push", 0.01 * sp.sin(7 * hl.t), 0.8)
     stiffness = hl.parameters("K", units="N/m", values=K)
     paddle = dataclasses.replace(hl.design.textbook, counts_per_metre=encoder)
     spring = hl.design.Task("spring", hl.Scene(force=stiffness * hl.x(hl.n)), motion, paddle=paddle)
     found = hl.design.measured(spring, {"method": "rk4", "T": T, "hold": "soh"})
-    x = 0.01 * np.sin(7 * np.arange(round(0.8 / T) * per) * T / per)
-    seen = x[::per] if encoder is None else np.floor(x[::per] * encoder) / encoder
+    true, x = (0.01 * np.sin(7 * T * (np.arange(round(0.8 / T) * many) + part) / many) for many, part in ((1, 0), (per, 0.5)))
+    seen = true if encoder is None else np.floor(true * encoder) / encoder
     error, peak = K * (np.repeat(seen, per) - x), K * np.abs(x).max()
     assert found.error == pytest.approx(100 * np.sqrt(np.mean(error**2)) / peak, rel=5e-3)
-    floor = 0 if encoder is None else 100 * K * np.sqrt(np.mean((seen - x[::per]) ** 2)) / peak
+    floor = 100 * K * np.sqrt(np.mean((seen - true) ** 2)) / peak
     assert found.sensor_floor == pytest.approx(floor, rel=2e-2)
 
 

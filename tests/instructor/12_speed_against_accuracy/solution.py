@@ -65,7 +65,7 @@ bumper_design_points = {
 
 discussion = (
     "For the wall I chose the half-sample law with a filter of 2 ms at 1 ms. Compared with the plain wall it gives up 5 % of "
-    "the load, and the error falls from 0.36 to 0.23 % while the margin rises from -1.25 to 0.30 N s/m. I do not dominate G, "
+    "the load, and the error falls from 0.37 to 0.24 % while the margin rises from -1.25 to 0.30 N s/m. I do not dominate G, "
     "which is right for a user who measures forces and has cycles to spare. On my own paddle with 0.1 N s/m the margin is "
     "negative, so I would take a longer filter and accept a larger error."
 )
