@@ -74,7 +74,7 @@ def test_an_untouched_lab_earns_nothing():
 def on_unusual_paddles():
     """Yield each lab on each of them at times, and one lab on one of them always."""
     for name in FOLDERS:
-        for paddle in UNUSUAL:
+        for paddle in UNUSUAL if name[:2] not in ("04", "14") else list(UNUSUAL)[:-1]:  # they are about damping
             often = (name[:2], paddle) == ("01", "eth")
             yield pytest.param(name, paddle, id=f"{name}-{paddle}", marks=[] if often else [pytest.mark.slow])
 
