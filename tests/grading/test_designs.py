@@ -7,10 +7,12 @@ import pytest
 from attacks.small_lab import notebook
 from page_reader import Page
 
+from hapticlab.course import design_answer
+from hapticlab.course.exercise import Case
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.formats import write
 from hapticlab.grading.formats.words import for_student, state
-from hapticlab.grading.pages.fronts import on_front
+from hapticlab.grading.pages.fronts import class_fronts, on_front
 from hapticlab.grading.pages.pages import write_pages
 from hapticlab.grading.report import ExerciseReport, Failing, Report
 from hapticlab.grading.run import run
@@ -101,6 +103,14 @@ def test_part_of_the_points_is_told_from_wrong(earned, word):
     assert state(one) == word and Report.from_json(report.to_json()) == report
     hidden = replace(one, failing=Failing({"task": "wall", "K": 450.0}, {"T": 1e-3}, None, "", public=False))
     assert "450" not in for_student(hidden) and ("right" == word or "too few reference points" in for_student(hidden))
+
+
+@pytest.mark.parametrize("design", [{**GOOD, "law": 'Ada\'s "zoh" is mine; it needs'}, {**GOOD, "Ada is not chosen in": 1}])
+def test_class_page_does_not_repeat_what_a_student_wrote(design):
+    row = {**design_answer.row(Case({"task": "wall"}, {"A": [0.3, 40.0, 0.2]}), design), "public": True}
+    one = ExerciseReport("design", "design", points=3.0, answered=True, designs=(row,))
+    ((why, count),) = class_fronts([Report("ada", "43", "A budget", "ada.ipynb", exercises=(one,))])[0]["failed"]
+    assert "Ada" in row["why"] and "Ada" not in why and count == 1 and why.endswith(row["why"][-30:])
 
 
 @pytest.mark.wide

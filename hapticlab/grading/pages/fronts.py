@@ -1,5 +1,6 @@
 """The designs of a class on the scene that all share: without names, with the reference points, as a figure and as tables."""
 
+import re
 from collections import Counter
 
 from ...base.drawing import COLD, WARM
@@ -11,6 +12,11 @@ from ..formats.words import points
 WIDTH, HEIGHT, PANEL, LEFT, BELOW, ABOVE = 860, 380, 430, 62, 48, 40
 #: place among (error, load, margin), the label and what is better, of each panel
 PANELS = ((0, "error [%]", "below and left is better"), (2, "passivity margin [N s/m]", "above and left is better"))
+#: reasons that repeat what a student wrote, which may be a name; the page of a class does not
+WRITTEN = (
+    (re.compile(r"^.* is not chosen in", re.S), "a name is not chosen in"),
+    (re.compile(r" is .*; it needs one of", re.S), " is not known; it needs one of"),
+)
 
 
 def class_fronts(graded):
@@ -43,9 +49,16 @@ def _scene(name, several):
         {"number": k + 1, "figures": line[1:4], "dominates": line[4], "earned": line[5], "front": on_front(line[1:4], all_)}
         for k, line in enumerate(reached)
     ]
-    failed = Counter(row["why"] for row, _ in several if not row["figures"])
+    failed = Counter(_without_words(row["why"]) for row, _ in several if not row["figures"])
     found = {"name": name, "scene": first["scene"], "points": first["points"], "answers": answers, "of": several[0][1].points}
     return {**found, "failed": failed.most_common(), "figure": figure(name, first["points"], answers)}
+
+
+def _without_words(why):
+    """Return a reason without what a student wrote."""
+    for written, told in WRITTEN:
+        why = written.sub(told, why)
+    return why
 
 
 def on_front(mine, others):
