@@ -19,6 +19,7 @@ from .analysis.stability.port_passivity import port_passivity as port
 from .analysis.stability.worst_motion import worst_motion
 from .limits.colgate import equivalent_damper, wall_damping
 from .limits.colgate import passivity_margin as margin
+from .limits.coupled.every_pair import coupled_paddles, coupling_any_hand
 from .limits.excess import passivity_ledger as ledger
 from .limits.indices import passivity_indices as indices
 from .limits.nyquist_disk import nyquist_disk
@@ -28,6 +29,8 @@ from .vocabulary import page
 
 __all__ = [
     "TwoPort",
+    "coupled_paddles",
+    "coupling_any_hand",
     "equivalent_damper",
     "impedance",
     "indices",

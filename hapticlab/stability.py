@@ -12,6 +12,7 @@ Next: ``hl.stability.wall_map`` simulates what a map of stiffness and damping do
 
 from .analysis.stability.step_limit import step_limit
 from .analysis.walls.wall_map import wall_map
+from .limits.coupled.two_hands import coupling_limit, wave_impedance_limit
 from .limits.local_stiffness import local_stiffness
 from .limits.root_locus import root_locus
 from .limits.stability import closed_loop_matrix as matrix
@@ -21,6 +22,7 @@ from .vocabulary import page
 from .widgets.view import explore
 
 __all__ = [
+    "coupling_limit",
     "damper_limit",
     "explore",
     "local_stiffness",
@@ -29,6 +31,7 @@ __all__ = [
     "root_locus",
     "step_limit",
     "wall_map",
+    "wave_impedance_limit",
 ]
 
 page(__name__)

@@ -13,5 +13,6 @@ of all parts, for nonlinear laws too) with ``local_stiffness``, the slopes that 
 Stability holds for one paddle in one hand: ``loop`` (the sampled loop as a matrix), ``stability`` and ``root_locus``.
 
 ``bounds`` sets the bounds that carry an author's name side by side. ``two_port`` has the criterion for displays between a
-hand and an environment; ``coupler`` and ``admittance`` design by it. ``plots`` draws the results.
+hand and an environment; ``coupler`` and ``admittance`` design by it. ``coupled`` is about two
+paddles that are coupled with each other. ``plots`` draws the results.
 """

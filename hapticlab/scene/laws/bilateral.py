@@ -27,6 +27,8 @@ ROLES = ("leader", "follower")
 #: what a message sets here -> the column of the other side's samples that it comes from; beside these the beat
 HEARD = {"other_x": "x", "other_v": "v", "echo_x": "heard_x", "echo_v": "heard_v", "other_energy": "energy_in"}
 BEAT = "beat"
+#: of the filter of waves [Hz]
+CUTOFF = 50.0
 #: a handle is nowhere faster than this [m/s]
 FASTEST = amount(10.0, "m/s", "fastest")
 
@@ -79,7 +81,7 @@ def bilateral_coupling(
     *,
     role: str = "follower",
     controller: bool = False,
-    cutoff: Number | None = None,
+    cutoff: Number = CUTOFF,
     engagement: Engagement = ENGAGEMENT,
 ) -> Scene:
     """One side of a bilateral coupling: a force from this handle and from what is heard of the other one.
@@ -92,8 +94,8 @@ def bilateral_coupling(
     * ``"wave"``: a line of wave impedance b (Anderson and Spong 1989; Niemeyer and Slotine 1991), F = b (v - r). The
       wave r [m/s] that arrives is 2 v_other - r_other, where the echo r_other is the wave that the other side used: no
       more than velocities are needed. A delay d makes a spring b/d of it, and k (0 unless bound) adds a spring against
-      drift, which is not passive under delay. Where handles are not matched to b, waves are reflected at both ends;
-      ``cutoff`` is a low-pass filter of the wave that arrives, which is passive.
+      drift, which is not passive under delay. A handle reflects waves, and fast ones with a gain slightly above 1,
+      because its force is held while it moves on: a low-pass filter of the wave that arrives takes that away.
 
     The force has a gain from 0 to 1, which is 0 until the other is heard and falls to 0 where the other is silent: see
     :class:`Engagement`.
@@ -108,8 +110,8 @@ def bilateral_coupling(
         to the link, as heard (Ryu, Artigas and Preusche 2010). The message then also has that energy. A damper of at
         most ``alpha_max`` [N s/m] takes back what was too much, as in :func:`passivity_controller`. What one hand
         stores in the coupling and gets back counts as too much: that is the price.
-    cutoff : float or text [Hz], optional
-        For waves.
+    cutoff : float or text [1/s]
+        Of the filter of waves, in Hz.
     engagement : Engagement
         When the coupling takes hold of what it hears, and when it lets go.
 
@@ -134,8 +136,6 @@ def bilateral_coupling(
     """
     choice("architecture", architecture, ARCHITECTURES, error=SceneError)
     choice("role", role, ROLES, error=SceneError)
-    if cutoff is not None and architecture != "wave":
-        raise SceneError(f"cutoff = {cutoff} is the filter of a wave; {architecture} has none")
     wave, leads = architecture == "wave", architecture == "position-force" and role == "leader"
     names = ["other_x", "other_v", *["echo_x"] * leads, *["echo_v"] * (leads or wave)]
     far, heard_equations, (fresh, jumped) = _heard(names, engagement)
@@ -189,8 +189,6 @@ def _gain(fresh, jumped, engagement):
 
 def _filtered(wave, cutoff):
     """A wave after a first-order low-pass filter, by implicit Euler, which passes no frequency with a gain above 1."""
-    if cutoff is None:
-        return wave, []
     rate, r = 2 * sp.pi * amount(cutoff, "1/s", "cutoff", "a coupling", above=0), signal("r", unit="m/s")
     return r(n), [_is(r(n), (r(n - 1) + T * rate * wave) / (1 + T * rate))]
 

@@ -54,9 +54,11 @@ def position_force(x, v, F, i, n, d):
 
 
 def wave(x, v, F, i, n, d):
+    """The other's outgoing wave v + F/b arrives, and a filter of 50 Hz keeps a part of what arrived before."""
     if n < d:
         return 0.0
-    return 1.5 * v[i, n] - 1.5 * v[1 - i, n - d] - F[1 - i, n - d]  # b v - F of the other's outgoing wave b v + F
+    b, gain, kept = 1.5, 2 * np.pi * 50 * T, v[i, n - 1] - F[i, n - 1] / 1.5 if n > d else 0.0
+    return b * (v[i, n] - (kept + gain * (v[1 - i, n - d] + F[1 - i, n - d] / b)) / (1 + gain))
 
 
 @pytest.mark.parametrize(
