@@ -81,8 +81,9 @@ class Task(ShowsItself):
 
     @functools.lru_cache(maxsize=64)  # noqa: B019  it lives as long as its task
     def positions(self, T: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the handle's positions at the samples [m], and what the encoder makes of them."""
-        x = self.motion.at(T * np.arange(round(self.reference.horizon / T)))[0]
+        """Return the positions that are sampled [m], late by the sensor, and what the encoder makes of them."""
+        times = T * np.arange(round(self.reference.horizon / T)) - self.paddle.sensor_delay
+        x = self.motion.at(np.maximum(times, 0.0))[0]
         counts = self.paddle.counts_per_metre
         return x, counted(x, counts, self.paddle.rounding) if counts else x
 

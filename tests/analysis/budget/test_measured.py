@@ -44,6 +44,15 @@ def test_error_of_a_spring_is_that_of_its_held_samples(encoder, T):
     assert found.sensor_floor == pytest.approx(floor, rel=2e-2)
 
 
+def test_late_sensor_costs_what_a_late_force_does():
+    found = []
+    for late in ({"delay": 0.75e-3}, {"sensor_delay": 0.75e-3}):
+        paddle = dataclasses.replace(hl.design.textbook, counts_per_metre=None, **late)
+        found.append(hl.design.measured(hl.design.task("mass", paddle=paddle), {**RK4, "method": "verlet"}))
+    assert found[1].error == pytest.approx(found[0].error, rel=0.02) and found[1].margin == found[0].margin
+    assert found[0].error > 1.2 * hl.design.measured(task("mass", None), {**RK4, "method": "verlet"}).error
+
+
 @pytest.mark.wide
 def test_load_is_the_cycles_of_a_tick_in_those_of_a_period():
     wall = hl.design.task("wall")
