@@ -51,7 +51,16 @@ def pays(lab):
     return sure < guess and sure <= true * (1 + 1e-9)
 
 
+def is_the_motor(lab):
+    """From the readings alone: the torque constant of the motor that was drawn, to 2 %, and its dead band."""
+    drive, motor = lab.drive, lab.motor
+    true = lab.full * drive.jacobian * drive.resistance / drive.supply
+    return abs(lab.k_t / true - 1) < 0.02 and 0.04 < motor["duty_dead"].value < 0.06 and 0 < lab.part < 1
+
+
 CLAIMS = [
+    ("The force at full duty and the Jacobian $J$ of lab 00 give the torque constant", is_the_motor, ""),
+    ("how much stiffness do the lags", lambda lab: 0 < lab.walls[0] <= lab.walls[1] * (1 + 1e-9), ""),
     (
         "because it *stops on the way*, at $v = 0$, where friction holds it",
         lambda lab: np.ptp(lab.coast.x[-20:]) <= 5 * lab.count,
