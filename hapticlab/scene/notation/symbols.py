@@ -131,7 +131,8 @@ copyreg.pickle(_SignalFunction, lambda made: (_restored, (made.name, dict(made._
 def signal(name: str, *, unit: str, initial: Term = 0, instead: Sequence[VelocityEstimate] = ()) -> Callable[[sp.Expr], sp.Expr]:
     """Declare a discrete-time signal y(n), to be defined by an equation ``Eq(y(n), ...)`` in a scene's ``eom``.
 
-    Its right side may use y(n-1), y(n-2): filters, observers and estimators are difference equations.
+    Its right side may use y(n-1), y(n-2): filters, observers and estimators are difference equations, and so are machines
+    with a state, such as a relay; docs/scenes.md, section "Machines that remember".
 
     Parameters
     ----------
