@@ -1,0 +1,83 @@
+"""Questions on measurement and load: intervals, what a motion shows, and what a board carries."""
+
+from .question import Concept, Question
+
+CONCEPT = Concept(
+    "measurement",
+    "Measurement and load",
+    (
+        Question(
+            "what_an_interval_states",
+            about="What a confidence interval states",
+            asks=(
+                "An experiment with a paddle gives: damping $b$ between {low:g} and {high:g} N s/m, 95 % confidence. What "
+                "does this mean?"
+            ),
+            right="If many people repeat the whole experiment, about 95 % of their intervals contain the true $b$.",
+            wrong={
+                "interval_of_samples": "95 % of the recorded samples show a damping in this interval.",
+                "interval_of_devices": "95 % of all paddles of this type have a damping in this interval.",
+                "interval_of_estimates": (
+                    "If many people repeat the whole experiment, about 95 % of their estimates lie in this interval."
+                ),
+            },
+            draws={"low, high": ((0.12, 0.16), (0.14, 0.18), (0.2, 0.26))},
+        ),
+        Question(
+            "value_for_a_guarantee",
+            about="The value of a measured damping that a guarantee needs",
+            asks=(
+                "The damping of a paddle was measured: {b:g} N s/m, with a 95 % interval from {low:g} to {high:g} N s/m. The "
+                "period is 1 ms, and nothing else is late. Which stiffness would you guarantee to be passive?"
+            ),
+            right="{right:g} N/m",
+            wrong={
+                "estimate_is_truth": "{estimate:g} N/m",
+                "upper_end_is_safe": "{upper:g} N/m",
+                "whole_period_delay": "{whole:g} N/m",
+            },
+            draws={"b, low, high": ((0.2, 0.15, 0.25), (0.3, 0.25, 0.35), (0.4, 0.3, 0.5))},
+            computes={
+                "right": lambda b, low, high: round(2000 * low, 6),
+                "estimate": lambda b, low, high: round(2000 * b, 6),
+                "upper": lambda b, low, high: round(2000 * high, 6),
+                "whole": lambda b, low, high: round(1000 * low, 6),
+            },
+        ),
+        Question(
+            "one_constant_speed",
+            about="What a motion at one constant speed shows",
+            asks=(
+                "A motor moves a free handle to the right at a constant {v:g} mm/s, and its force is recorded {n:g} times. "
+                "The handle has a mass $m$, a viscous damping $b$ and a dry friction $f_c$. What does this recording "
+                "determine?"
+            ),
+            right="only the sum $f_c + b\\,v$",
+            wrong={
+                "more_samples_suffice": "$m$, $b$ and $f_c$, if the recording is long enough",
+                "one_speed_separates": "$b$ and $f_c$, but not $m$",
+                "force_shows_mass": "$m$, but neither $b$ nor $f_c$",
+            },
+            draws={"v": (50, 80, 100), "n": (500, 1000, 2000)},
+        ),
+        Question(
+            "rare_long_ticks",
+            about="Whether a board carries a scene with rare long ticks",
+            asks=(
+                "The sampling period is 1 ms. On a board, {often:g} of 100 ticks take {short:g} ms each, and the others take "
+                "{long:g} ms each. Does the board carry this scene?"
+            ),
+            right="No: a tick that takes longer than the period makes the force late, however rare it is.",
+            wrong={
+                "mean_load_suffices": "Yes: the mean load is {mean:.3g} %.",
+                "delay_free": "Yes: a force that is late by {late:.2g} ms is the same force, only a little later.",
+                "shorter_period_less_load": "Only with a shorter period, which leaves less to compute in each tick.",
+            },
+            draws={"often": (96, 97, 98, 99), "short": (0.5, 0.6, 0.7), "long": (1.3, 1.4, 1.6)},
+            computes={
+                "mean": lambda often, short, long: often * short + (100 - often) * long,
+                "late": lambda often, short, long: long - 1,
+            },
+        ),
+    ),
+)
