@@ -170,10 +170,7 @@ def _personal(options):
     roster, target, seed = read_roster(options.roster), Path(options.target), options.seed or 0
     labs = _labs(options)
     only = [lab.number for lab in labs] if options.lab else []
-    column = _column(roster, options.column)
-    students = [row[column].strip() for row in roster.rows]
-    if not all(students):
-        raise CourseError(f"{roster.path}: row {students.index('') + 2} has no {roster.columns[column]}; name another --column")
+    column, students = _column(roster, options.column), students_of(roster, options.column)
     states = personal_labs(students, target, options.instructor, seed, only, labs)
     kept = sorted(path for path, state in states.items() if state == "kept")
     print(f"written: {target}, labs of {len(students)} students by {roster.columns[column]!r}, numbers of seed {seed}")
@@ -185,6 +182,15 @@ def _personal(options):
         "what they hand in, named by the same names, is graded by the same seed:",
         words_of(["hapticlab", "grade", "SUBMISSIONS", *graded]),
     )
+
+
+def students_of(roster, asked):
+    """Return the names of a class, from the column that is asked for, or else from the one that names students."""
+    column = _column(roster, asked)
+    students = [row[column].strip() for row in roster.rows]
+    if not all(students):
+        raise CourseError(f"{roster.path}: row {students.index('') + 2} has no {roster.columns[column]}; name another --column")
+    return students
 
 
 def _column(roster, asked):

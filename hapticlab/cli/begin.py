@@ -12,7 +12,7 @@ GROUPS = {
     "Look and learn": ("demo", "labs"),
     "Run a scene of your own": ("run", "tradeoff"),
     "With a paddle": ("guide", "ports", "doctor", "flash", "calibrate", "bench"),
-    "With a class": ("assign", "grade"),
+    "With a class": ("assign", "grade", "concepts"),
 }
 BEGIN = """hapticlab: from an equation of motion to a felt virtual wall.
 

@@ -38,6 +38,7 @@ def parser():
     _add_labs(commands)
     _add_assign(commands)
     _add_grade(commands)
+    _add_concepts(commands)
     for one in (_add_run(commands, shared), _add_tradeoff(commands, shared), _add_share(commands, shared)):
         one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
         words = "use the paddle of a profile, by name or file, such as bench7.json, in the hand of the scene file's paddle"
@@ -170,6 +171,22 @@ def _add_grade(commands):
     made.add_argument("--processes", type=_whole(1, "a number of processes"), default=1, metavar="N", help=words)
     made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
     made.add_argument("--fresh", action="store_true", help="grade all submissions again, also those already graded")
+
+
+def _add_concepts(commands):
+    text = "ask concept questions before and after a course, and write pages of what a class learned; answers are read, never run"
+    made = _add_command(commands, "cli.concepts.concepts", text)
+    made.add_argument(
+        "target", metavar="DIR", help="folder for the notebooks to hand out, or, with --before and --after, for the pages"
+    )
+    words = "what students handed in before the course: folders, zip files or notebooks"
+    made.add_argument("--before", metavar="PATH", nargs="+", default=[], help=words)
+    made.add_argument("--after", metavar="PATH", nargs="+", default=[], help="what they handed in after the course")
+    made.add_argument("--seed", type=_seed, default=0, metavar="N", help="of the numbers and the order of options (default: 0)")
+    made.add_argument("--roster", metavar="FILE.csv", help="the class, each of whom gets questions of their own")
+    made.add_argument("--column", metavar="NAME", help="of the roster, by which notebooks will be named")
+    words = "write a class of N simulated students and its pages, to look at (default: 40)"
+    made.add_argument("--demo", type=_whole(2, "a number of students"), nargs="?", const=40, metavar="N", help=words)
 
 
 def _add_board_commands(commands, shared):

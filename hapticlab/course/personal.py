@@ -101,7 +101,7 @@ def personal_labs(students, folder, tree, seed=0, only=(), labs=None):
     """
     check_tree(tree)
     chosen, target = _chosen(find_labs() if labs is None else labs, Path(tree), only), Path(folder)
-    states, names = {}, [_folder_name(student) for student in dict.fromkeys(students)]
+    states, names = {}, [folder_name(student) for student in dict.fromkeys(students)]
     alike = {name.casefold(): name for name in names}
     if len(alike) != len(names):
         raise CourseError(
@@ -185,7 +185,7 @@ def _chosen(labs, tree, only):
     return [lab for number, lab in found.items() if not only or number in only]
 
 
-def _folder_name(student):
+def folder_name(student):
     """Return a student's name where it can be a folder's."""
     if NO_FOLDER.fullmatch(student) or not student.isprintable():
         raise CourseError(

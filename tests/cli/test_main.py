@@ -710,6 +710,7 @@ def test_every_command_is_a_function_that_is_there():
             "lab",
             "assign",
             "grade",
+            "concepts",
             "run",
             "tradeoff",
             "share",

@@ -50,8 +50,8 @@ CONCEPT = Concept(
             about="The price of a prediction in counts",
             asks=(
                 "A law predicts half a period ahead: $F = k\\,\\bigl(x(n) + \\tfrac12 (x(n) - x(n-1))\\bigr)$ with $k$ = {K:g} "
-                "N/m. One count of the encoder is {q:g} µm. The reading was constant for a while, and now it increases by one"
-                " count. By how much does the force change at this sample?"
+                "N/m. One count of the encoder is {q:g} µm. The reading was constant for a while, and now it increases by one "
+                "count. By how much does the force change at this sample?"
             ),
             right="{right:.4g} mN",
             wrong={

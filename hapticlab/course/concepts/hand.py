@@ -32,8 +32,8 @@ CONCEPT = Concept(
             "below_the_threshold",
             about="Answers to differences below the threshold",
             asks=(
-                "A person with a Weber fraction of {w:g} % compares walls whose stiffness differs by {half:g} %, and must say"
-                " in each of 200 trials which wall is stiffer. How often is the person right?"
+                "A person with a Weber fraction of {w:g} % compares walls whose stiffness differs by {half:g} %, and must say "
+                "in each of 200 trials which wall is stiffer. How often is the person right?"
             ),
             right="in more than half of the trials, but not in all",
             wrong={
@@ -49,8 +49,8 @@ CONCEPT = Concept(
             about="Which part of a scene to leave out",
             asks=(
                 "A scene needs too many cycles. Part A takes {a_cost:g} cycles, and without it the force changes by {a:g} % "
-                "at most. Part B takes {b_cost:g} cycles, and without it the force changes by {b:g} %. A hand notices changes"
-                " of {threshold:g} % and more. Either part is expensive enough. Which part do you leave out?"
+                "at most. Part B takes {b_cost:g} cycles, and without it the force changes by {b:g} %. A hand notices changes "
+                "of {threshold:g} % and more. Either part alone would free enough cycles. Which part do you leave out?"
             ),
             right="part A only",
             wrong={

@@ -43,7 +43,7 @@ class Question:
     >>> one = Question("force", "a force", "?", "{F:g} N", wrong, {"K": (200, 300)}, {"F": lambda K: K / 100})
     >>> asked = one.asked("q01", "seed 3, ada")
     >>> asked.key, len(asked.options), sorted(option.misconception for option in asked.options)
-    ('a', 4, ['', 'a', 'b', 'c'])
+    ('c', 4, ['', 'a', 'b', 'c'])
     """
 
     name: str

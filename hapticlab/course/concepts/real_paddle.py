@@ -34,7 +34,7 @@ CONCEPT = Concept(
                 "it oscillates. The real paddle has dry friction, and a hand that rests lightly on the wall feels no "
                 "oscillation. What is true of this wall on the real paddle?"
             ),
-            right="Friction stops a small oscillation, but an oscillation that a hard knock starts can grow.",
+            right="Friction stops a small oscillation, but a hard knock can start an oscillation that does not stop.",
             wrong={
                 "stable_is_passive": "It is passive on this paddle, because it does not oscillate.",
                 "friction_lowers_leak": (
@@ -50,16 +50,14 @@ CONCEPT = Concept(
             asks=(
                 "A motor compensates {p:g} % of the dry friction of a handle, so more than all of it. The handle also has "
                 "some viscous damping, which is not compensated. A light finger holds the handle as a soft spring. What "
-                "happens after a small push?"
+                "happens after a push?"
             ),
             right="The handle oscillates by itself, with an amplitude that soon remains the same.",
             wrong={
                 "more_is_lighter": "The handle only feels lighter than at 100 %, and comes to rest at the finger.",
-                ((
+                "friction_stays_positive": (
                     "The handle behaves as at 100 %, because a program cannot remove more friction than there is."
-                )
-                    "friction_stays_positive"
-                ): "The handle behaves as at 100 %, because a program cannot remove more friction than there is.",
+                ),
                 "instability_grows": "The handle oscillates, and the amplitude grows without end.",
             },
             draws={"p": (150, 160, 180)},

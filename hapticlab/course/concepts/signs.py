@@ -10,8 +10,8 @@ CONCEPT = Concept(
             "motor_force",
             about="The force of the motor on a handle inside a wall",
             asks=(
-                "Positive is to the right. A virtual wall of {K:g} N/m fills the space to the right of $x = 0$. The handle is"
-                " at rest {d:g} mm inside the wall. Which force does the motor apply to the handle?"
+                "Positive is to the right. A virtual wall of {K:g} N/m fills the space to the right of $x = 0$. The handle is "
+                "at rest {d:g} mm inside the wall. Which force does the motor apply to the handle?"
             ),
             right="{F:.3g} N to the left",
             wrong={
@@ -50,10 +50,10 @@ CONCEPT = Concept(
             "larger_pulley",
             about="A larger pulley on the motor of the paddle",
             asks=(
-                "A cable runs from the pulley on the shaft of the motor to the sector that carries the handle. The encoder is"
-                " on the shaft of the motor. You replace the pulley by one whose diameter is {r:g} times as large; nothing "
-                "else changes. What happens to the force at the handle at the same motor current, and to the counts per metre"
-                " of handle travel?"
+                "A cable runs from the pulley on the shaft of the motor to the sector that carries the handle. The encoder is "
+                "on the shaft of the motor. You replace the pulley by one whose diameter is {r:g} times as large; nothing "
+                "else changes. What happens to the force at the handle at the same motor current, and to the counts per metre "
+                "of handle travel?"
             ),
             right="The force and the counts per metre are both divided by {r:g}.",
             wrong={

@@ -37,7 +37,7 @@ NAMES = {
 
 
 @lru_cache(maxsize=1)
-def _templates():
+def templates():
     """Templates whose every expression is text of anybody: bounded and escaped, unless a template calls it safe."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
     from markupsafe import Markup
@@ -107,28 +107,29 @@ def write_pages(reports: Iterable[Report], folder: File, *, lab: Lab) -> list[Pa
         copies[report.student] = copies.get(report.student, -1) + 1
         named.append((f"students/{file_name(report.student, copies[report.student])}.html", report))
     facts = class_facts(named)
-    pages = {"class.html": _templates().get_template("class.html").render(lab=lab, **facts)}
+    pages = {"class.html": templates().get_template("class.html").render(lab=lab, **facts)}
     if facts["fronts"]:
-        pages["fronts.html"] = _templates().get_template("fronts.html").render(lab=lab, fronts=facts["fronts"])
-    student = _templates().get_template("student.html")
+        pages["fronts.html"] = templates().get_template("fronts.html").render(lab=lab, fronts=facts["fronts"])
+    student = templates().get_template("student.html")
     for address, report in named:
         pages[address] = student.render(report=report, lab=lab)
-    return _written(Path(folder), pages)
+    return write_texts(Path(folder), pages)
 
 
-def check_folder(folder: File) -> None:
-    """Refuse a folder whose class.html is of something else, which would be overwritten.
+def check_folder(folder: File, page: str = "class.html") -> None:
+    """Refuse a folder whose page of the class is of something else, which would be overwritten.
 
     Raises
     ------
     CourseError
     """
-    path = Path(folder) / "class.html"
+    path = Path(folder) / page
     if path.is_file() and OWN not in path.read_bytes()[:500]:
         raise CourseError(f"{path} is not a page of hapticlab's and would be overwritten; name a folder of its own for the pages")
 
 
-def _written(folder, pages):
+def write_texts(folder, pages):
+    """Write texts to their addresses in a folder, and return their paths."""
     path = folder / "students"
     try:
         path.mkdir(parents=True, exist_ok=True)
