@@ -2,6 +2,18 @@
 
 from .question import Concept, Question
 
+#: a cell that shows a wall with and without dry friction
+LEANING = """\
+hand, curves = hl.Hand(m=0.005, b=0.02, k=60, push=2.0), {}
+for name, friction in (("no dry friction", 0), ("dry friction of 20 mN", 0.02)):
+    handle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=friction, hand=hand)
+    log = handle.run(hl.wall()(k=1000, x_o=0), duration=0.3, x=1.887e-3, v=0.02)
+    curves[name] = log.t, 1e3 * log.x
+hl.show(
+    hl.plot(curves, xlabel="time [s]", ylabel="handle position x [mm]"),
+    alt="Without dry friction the oscillation grows; with it, the handle rests.",
+)"""
+
 CONCEPT = Concept(
     "real_paddle",
     "Encoder and friction",
@@ -30,19 +42,19 @@ CONCEPT = Concept(
             "friction_hides_chatter",
             about="A wall that dry friction keeps quiet",
             asks=(
-                "A wall of {K:g} N/m is far stiffer than the damping of the paddle allows. In a simulation without friction "
-                "it oscillates. The real paddle has dry friction, and a hand that rests lightly on the wall feels no "
-                "oscillation. What is true of this wall on the real paddle?"
+                "A wall of 1000 N/m is far stiffer than the damping of the handle allows, and a light hand leans on it. "
+                "The picture shows the handle after a touch: without dry friction it oscillates, with 20 mN of dry "
+                "friction it comes to rest. What is true of this wall on the handle *with* dry friction?"
             ),
             right="Friction stops a small oscillation, but a hard knock can start an oscillation that does not stop.",
             wrong={
-                "stable_is_passive": "It is passive on this paddle, because it does not oscillate.",
+                "stable_is_passive": "It is passive on this handle, because it does not oscillate.",
                 "friction_lowers_leak": (
-                    "It generates less energy in a given motion than in the simulation, because friction reduces the leak."
+                    "It generates less energy in a given motion than without friction, because friction reduces the leak."
                 ),
                 "dry_is_viscous": "Friction stops large oscillations as it stops small ones, as damping would.",
             },
-            draws={"K": (800, 1000, 1200, 1500)},
+            picture=LEANING,
         ),
         Question(
             "too_much_compensation",

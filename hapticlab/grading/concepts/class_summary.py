@@ -152,9 +152,10 @@ def _of(concept: str) -> list[str]:
 def _gain(title: str, answers: Sequence[str], scores: tuple[Array, Array], seed: int) -> Gain:
     names = list(questions())
     before, after = (array[:, [names.index(answer) for answer in answers]] for array in scores)
-    change = interval(lambda one, other: float(other.mean() - one.mean()), before, after, seed=seed)
+    first, last = float(before.mean()), float(after.mean())
+    change = interval(lambda one, other: other - one, before, after, seed=seed)
     spread = interval(gain, before, after, seed=seed)
-    return Gain(title, len(answers), float(before.mean()), float(after.mean()), change, gain(before, after), spread)
+    return Gain(title, len(answers), first, last, change, float(gain(first, last)), spread)
 
 
 def _items(matched: Sequence[tuple[Paper, Paper]], scores: tuple[Array, Array]) -> list[Item]:

@@ -62,14 +62,8 @@ def write_concept_pages(found: Summary, after: Iterable[Paper], folder: File) ->
     readable = [paper for paper in after if not paper.problem]
     addresses = {paper.student: f"students/{file_name(paper.student)}.html" for paper in readable}
     before = {one.student: one for one, _ in found.matched}
-    facts = {
-        "found": found,
-        "status": status,
-        "addresses": addresses,
-        "figure": gain_figure,
-        "percent": percent,
-        "number": number,
-    }
+    shows = {"figure": gain_figure, "percent": percent, "number": number, "MOST_SHOWN": MOST_SHOWN}
+    facts = {"found": found, "status": status, "addresses": addresses, **shows}
     texts = {
         CLASS: templates().get_template("concepts.html").render(facts),
         STUDENTS: table(["student", *_columns(), "status"], _student_rows(found, " ".join(status))),
