@@ -5,8 +5,10 @@ The answer is plain data, and the grader's own process measures it: nothing that
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
+from ..analysis.budget.design import Design
 from ..analysis.budget.measured import measured
 from ..analysis.budget.tasks import task
 
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 EQUAL = 2e-3
 #: of the three figures: what it is, its unit, and the sign with which less is better
 FIGURES = (("error", "%", 1), ("load", "%", 1), ("margin", "N s/m", -1))
+#: what a design may give; where it is none, the reason begins with the name that is wrong
+NAMES = tuple(one.name for one in fields(Design))
 
 
 def found(case: Case, answer: Any) -> MeasuredDesign:
@@ -84,10 +88,12 @@ def points_of(given: Mapping[str, Any], designs: Mapping[str, Mapping[str, Any]]
 
 
 def slip(case: Case, answer: Any) -> str:
-    """Return the sentence of the first slip whose names the answer gives so."""
+    """Return the sentence of the first slip whose names the answer gives so; of no design only one on the name that is wrong."""
     if not isinstance(answer, dict):
         return ""
-    return next((said for wrong, said in case.slips if all(answer.get(name) == value for name, value in wrong.items())), "")
+    about = found(case, answer).why.partition(" ")[0]
+    slips = [(wrong, said) for wrong, said in case.slips if about in wrong or about not in NAMES]
+    return next((said for wrong, said in slips if all(answer.get(name) == value for name, value in wrong.items())), "")
 
 
 def _dominated(case, one):

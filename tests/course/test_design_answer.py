@@ -106,6 +106,12 @@ def test_card_names_the_nearest_points_and_the_slip():
     assert not part.passed and "50% of the points in the public cases" in part.text and "dominates A, B, 2 of 4" in part.text
 
 
+def test_slip_is_not_told_of_what_is_no_design_for_another_reason():
+    assert SLIP in checked("42.wall", exercise(), PLAIN).text
+    text = checked("42.wall", exercise(), {**PLAIN, "T": 0}).text
+    assert "T = 0 s; it needs" in text and SLIP not in text
+
+
 def test_reference_points_are_figures_of_feasible_designs():
     points = points_of({"task": "wall"}, {"good": GOOD, "fast": {**GOOD, "T": 2.5e-4}})
     assert list(points) == ["good"] and points["good"] == [0.237, 34.5, 0.3]
