@@ -7,7 +7,7 @@ from hapticlab import vocabulary
 #: dataclasses that are themselves the record of a thing, and so have as many fields as the thing has
 RECORDS = {
     "hl.SimulatedPaddle", "hl.Device", "hl.devices.PaddleProfile", "hl.records.Telemetry", "hl.mechanics.Mechanics",
-    "hl.people.Task", "hl.design.CompensationLimit", "hl.methods.Method",
+    "hl.people.Task", "hl.design.CompensationLimit", "hl.methods.Method", "hl.devices.DriveTrain",
 }  # fmt: skip
 #: nine: keywords that pass through paddle.run, live and many tests as they are; and for hl.live and hl.share what a first view
 #: needs, by the same names

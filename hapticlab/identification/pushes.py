@@ -67,9 +67,12 @@ def _pushed(paddle, force, starts, signs, duration):
     """Return the record of pushes at samples and of signs; raise where the motor was cut."""
     A, length = parameters("A", units="N", values=force), max(2, round(LASTS / paddle.T))
     on = [(sign, (n >= int(at)) & (n < int(at) + length)) for at, sign in zip(starts, signs, strict=True)]
-    there, back = (sp.Or(*(during for way, during in on if way == sign)) for sign in (1, -1))
+    pushed = sp.S.Zero
+    for sign in (-1, 1):  # a single push has one direction
+        if during := [one for way, one in on if way == sign]:
+            pushed = when(sp.Or(*during), sign * A, pushed)
     fastest = speed_limit(paddle, SPEED)
-    scene = leashed(Scene(when(there, A, when(back, -A, 0)), name="pushes"), TRAVEL, fastest)
+    scene = leashed(Scene(pushed, name="pushes"), TRAVEL, fastest)
     scene = replace(scene, watch={})  # x and v tell the cut as well; the slowest board has no time for one channel more
     if isinstance(paddle, SerialPaddle):
         log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "hl.identify.hand")
