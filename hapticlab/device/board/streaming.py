@@ -133,9 +133,11 @@ class Streaming:
         return since
 
     def hear(self, **numbers):
-        """Set what another paddle sends, in SI, unchecked, unrecorded and unanswered: what is lost, the next one replaces."""
-        if self.motor:
-            tell(self.paddle.exchange, self.program, numbers)
+        """Set what another paddle sends, in SI, unchecked and unrecorded; return False where the board is not ready for it.
+
+        Nobody waits for the answer: what is lost, the next one replaces.
+        """
+        return not self.motor or tell(self.paddle.exchange, self.program, numbers)
 
     def hold(self, held):
         """A hand of flesh takes the handle and lets go of it by itself."""

@@ -58,7 +58,7 @@ class Exchange:
         self.state, self.broken, self.beating = None, None, False
         # guarded requests count by themselves: a board refuses one older than the last it obeyed
         self._sequences = {guarded: itertools.count(1) for guarded in (False, True)}
-        self._wanted = self._reply = self._then = self._beat_sequence = None
+        self._wanted = self._reply = self._then = self._beat_sequence = self._told = None
         self._alone = not (self.lockstep or has_threads())  # nobody reads while somebody waits
         port.timeout = 0.0 if self._alone else HEARTBEAT / 4  # so that a silent board does not keep the reader from beating
         self._turn, self._news, self.closed = threading.Lock(), threading.Condition(), False
@@ -115,13 +115,18 @@ class Exchange:
     def tell(self, message, *values, rest=b""):
         """Send a request once and wait for no reply; return False, with nothing sent, where another one is under way.
 
-        A board takes one frame at a time, so this is for what may be lost and comes again at once.
+        This is for what may be lost and comes again at once. A board takes one frame at a time, so the next one is sent
+        when this one was answered, or was lost.
         """
+        if self._told is not None and self.now() - self._last_sent < PATIENCE:
+            return False
         if not self._turn.acquire(blocking=False):
             return False
         try:
             self._require_my_time()
-            self._send(encode(message, self._next_sequence(message), *values, rest=rest, session=self.session))
+            sequence = self._next_sequence(message)
+            self._told = sequence & 255
+            self._send(encode(message, sequence, *values, rest=rest, session=self.session))
         finally:
             self._turn.release()
         return True
@@ -244,6 +249,8 @@ class Exchange:
             if frame.message == "STATE":
                 self.state = known
                 self._beat_sequence = None if frame.sequence == self._beat_sequence else self._beat_sequence
+            elif frame.message == "ACK" and frame.sequence == self._told:
+                self._told = None
             if frame.message in ("SAMPLE", "FAULTED"):
                 self.on_frame(frame)
             elif self._is_wanted(frame, known):

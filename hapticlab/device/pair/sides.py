@@ -1,5 +1,7 @@
 """One paddle of a pair: a simulated one or one on a board, both asked in the same words."""
 
+import math
+
 import numpy as np
 
 from ...errors import HapticlabError, PaddleError
@@ -15,7 +17,7 @@ LONGEST_BURST = 0.1
 
 
 class Side:
-    """A paddle of a pair, its scene, and what it recorded.
+    """A paddle of a pair, its scene, what it recorded, and in words what failed.
 
     Parameters
     ----------
@@ -42,7 +44,7 @@ class Side:
     def off(self):
         """Why the motor is off, in words; empty while it is on, or waits for the handle to be led."""
         source = self.source
-        return self._failed or source.fault or ("" if source.kind == "simulated" or source.begun else "the motor is off")
+        return self.failed or source.fault or ("" if source.kind == "simulated" or source.begun else "the motor is off")
 
     def wants(self, other):
         """Refuse another side that does not record what this one has to hear."""
@@ -56,7 +58,8 @@ class Side:
 
     def start(self, x, v):
         """Start the scene with the handle at x [m] and v [m/s]; its coupling gives no force before the other is heard."""
-        self.rows, self.changes, self._values, self.arrivals, self._failed = [], [], named_values(self.source.program), [], ""
+        self.rows, self.changes, self._values, self.arrivals, self.failed = [], [], named_values(self.source.program), [], ""
+        self._waits = None
         self._place(x, v)
         self.source.start()
 
@@ -70,15 +73,25 @@ class Side:
         return new
 
     def hear(self, message):
-        """Give the scene what the other paddle sent."""
-        self._asked(self.source.hear, **message)
+        """Give the scene what the other paddle sent, or None for nothing new; what a board is not ready for waits.
+
+        A message with what is no number is not passed on: to this side it is silence.
+        """
+        if message is not None and all(map(math.isfinite, message.values())):
+            self._waits = message
+        if self._waits and self._asked(self.source.hear, **self._waits):
+            self._waits = None
+
+    def stop(self):
+        """Switch the motor off; a failure is told by :attr:`failed`, so that the other side is stopped too."""
+        self._asked(self.source.stop)
 
     def _asked(self, what, *given, **named):
         """Ask the source; a port that fails stops this side, in words."""
         try:
             return what(*given, **named)
         except HapticlabError as problem:
-            self._failed = self._failed or str(problem)
+            self.failed = self.failed or str(problem)
 
     def message(self, rows, other):
         """What the other side is to hear of the newest of these rows."""

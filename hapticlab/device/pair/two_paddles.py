@@ -177,7 +177,8 @@ class TwoPaddles(ShowsItself):
         self._require_run()
         self._halt()
         left, right = self._sides
-        return CoupledRun(left.telemetry(), right.telemetry(), link_times(left, right), link_times(right, left), self._fault)
+        fault = self._fault or "; ".join(f"{side.name}: {side.failed}" for side in self._sides if side.failed) or None
+        return CoupledRun(left.telemetry(), right.telemetry(), link_times(left, right), link_times(right, left), fault)
 
     def _require_run(self):
         if not self._running:
@@ -196,14 +197,12 @@ class TwoPaddles(ShowsItself):
         """Switch both motors off, each also where the other one's port has failed."""
         with ExitStack() as both:
             for side in self._sides:
-                both.callback(side.source.stop)
+                both.callback(side.stop)
 
     def _turn(self):
         """Give each side what has arrived for it, let time pass, and send what was measured on its way."""
         for side, relay in zip(self._sides, reversed(self._relays), strict=True):
-            message = relay.arrived(self._clock() + ROUNDING)
-            if message is not None:
-                side.hear(message)
+            side.hear(relay.arrived(self._clock() + ROUNDING))
         for side, other, relay in zip(self._sides, reversed(self._sides), self._relays, strict=True):
             ticks = side.due(self._clock()) if self._realtime else 1
             rows = side.advance(ticks, self._clock) if ticks else None

@@ -132,8 +132,9 @@ class Stepping:
         return self.ticks * self.paddle.T
 
     def hear(self, **numbers):
-        """Set what another paddle sends, in SI, unchecked and unrecorded, until the next start."""
+        """Set what another paddle sends, in SI, unchecked and unrecorded, until the next start; return True."""
         self._heard |= numbers
+        return True
 
     def hold(self, held):
         """Take the handle, or let go of it; position and velocity stay as they are at that tick."""

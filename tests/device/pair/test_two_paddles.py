@@ -95,7 +95,7 @@ def test_what_is_sent_to_either_side_is_never_a_force(monkeypatch):
     from hapticlab.device.pair.sides import Side
 
     hear = Side.hear
-    monkeypatch.setattr(Side, "hear", lambda side, message: (heard.append(set(message)), hear(side, message))[1])
+    monkeypatch.setattr(Side, "hear", lambda side, message: (heard.append(set(message or ())), hear(side, message))[1])
     for architecture in ("position-position", "position-force", "wave"):
         pair = hl.devices.TwoPaddles(paddle(), paddle(), *sides(architecture, **{"k": 50, "b": 1.0}))
         pair.run(0.01)
