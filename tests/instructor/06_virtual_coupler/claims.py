@@ -34,6 +34,7 @@ CLAIMS = [
         lambda lab: all(0.16 < mass_felt(lab, device, "admittance") < 0.22 for device in lab.devices),
         "",
     ),
+    ("its stiff servo relies on the hand", lambda lab: lab.least > 10 * 0.2, ""),
     ("the friction of the arm almost disappears", lambda lab: friction_felt(lab, "admittance") < 0.1, ""),
     (
         "It agrees with the formula $KT/2 + b_c$ unless another need",
