@@ -9,6 +9,7 @@ A profile is a set of published or measured constants, and says which:
 
 ``profile("hapkit_rough")`` has typical friction and delays with intervals, ``profile("bench7.json")`` is what
 ``hl.identify.twin`` found of one paddle and ``save`` wrote, and ``predict`` gives the interval of a limit on either.
+``profile("hapkit").drive`` converts a force at the handle into a torque and a current, with the radii and the motor of its kind.
 
 Next: ``hl.connect()`` opens a board, ``hl.doctor()`` checks it, ``hl.identify.paddle`` measures its constants.
 """

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...errors import PaddleError
 from ..arguments import numbers
+from ..facts import card
 from ..shows_itself import ShowsItself
 
 if TYPE_CHECKING:
@@ -156,16 +157,17 @@ class DriveTrain(ShowsItself):
 
     def __str__(self) -> str:
         radii = ", ".join(f"{name} {1e3 * getattr(self, name):.4g} mm" for name in ("drum", "sector", "handle"))
-        told = [f"drive: {radii}; {1e3 * self.jacobian:.4g} mm of handle travel per radian of the motor"]
+        rows = {"radii": radii}
         if self.metres_per_count is not None:
-            told.append(f"{self.counts_per_turn:g} counts per turn, {1e6 * self.metres_per_count:.4g} um per count")
+            rows["sensor"] = f"{self.counts_per_turn:.6g} counts per turn, {1e6 * self.metres_per_count:.4g} um per count"
         if self.force_per_ampere is not None:
-            told.append(f"{self.torque_constant:g} N m/A, {self.force_per_ampere:.4g} N/A at the handle")
+            rows["motor"] = f"{self.torque_constant:.4g} N m/A, {self.force_per_ampere:.4g} N/A at the handle"
         if self.force_full is not None:
-            told.append(f"at most {self.current_full:.4g} A, {self.force_full:.4g} N")
+            rows["supply"] = f"at most {self.current_full:.4g} A, {self.force_full:.4g} N at the handle"
         if self.rotor_mass is not None:
-            told.append(f"the rotor is felt as {1e3 * self.rotor_mass:.4g} g")
-        return f"{'; '.join(told)} (source: {self.source or 'not given'})"
+            rows["rotor"] = f"felt as {1e3 * self.rotor_mass:.4g} g at the handle"
+        title = f"drive: the handle moves {1e3 * self.jacobian:.4g} mm per radian of the motor"
+        return card(title, {**rows, "source": self.source or "not given"})
 
     def as_data(self) -> dict[str, Any]:
         """Return what a file holds of it: each known number under its name and unit, and the source."""

@@ -40,6 +40,14 @@ def test_the_supply_limits_the_current_in_both_directions():
     assert replace(TOY, supply=None).current(100.0) == pytest.approx(10), "without a supply nothing limits it"
 
 
+def test_it_says_what_each_part_does():
+    lines = str(replace(TOY, counts_per_turn=16_384, source="a sketch")).split("\n")
+    assert lines[0] == "drive: the handle moves 3 mm per radian of the motor"
+    assert [line.split()[0] for line in lines[1:]] == ["radii", "sensor", "motor", "supply", "rotor", "source"]
+    assert "16384 counts per turn, 1.15 um per count" in lines[2] and lines[4].endswith("at most 2 A, 20 N at the handle")
+    assert "felt as 100 g" in lines[5] and "rotor" not in str(replace(TOY, rotor_inertia=None))
+
+
 def test_what_is_not_known_is_none_or_refused():
     bare = hl.devices.DriveTrain(drum=0.004, sector="80 mm", handle=0.06)
     assert bare.sector == 0.08
