@@ -99,9 +99,10 @@ class FeltDifference(ShowsItself):
         if self.same_bits:
             return "not noticed: the same bits at every sample"
         word = "noticed" if self.noticed else "hidden by the encoder" if self.hidden else "not noticed"
+        at = int((self._shown if self.noticed else self.vibration).argmax())  # both in one window, or they could not be compared
         return (
-            f"{word}: {self.force.max():.2g} of the force threshold, {self.vibration.max():.2g} of the vibration threshold "
-            f"(the encoder alone: {self.own_vibration.max():.2g})"
+            f"{word}: {self.force.max():.2g} of the force threshold, {self.vibration[at]:.2g} of the vibration threshold "
+            f"(the encoder alone: {self.own_vibration[at]:.2g})"
         )
 
 

@@ -1,5 +1,7 @@
 """What a hand notices of two scenes: beside closed forms of springs, ripples and counts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -57,6 +59,15 @@ def test_counts_hide_what_is_weaker():
     weak = felt_difference(GROOVES, SMOOTH, 16 * speed * TIME, coarse)
     assert weak.hidden and not weak.noticed and "hidden by the encoder" in str(weak)
     assert felt_difference(GROOVES, SMOOTH, 16 * speed * TIME, HANDLE).noticed
+
+
+def test_words_compare_vibration_and_encoder_in_one_window():
+    """Noticed in the first window, hidden in the second, where both are larger."""
+    found = felt_difference(GROOVES, SMOOTH, stroke(1.0), HANDLE)
+    moved = replace(found, force=np.zeros(2), vibration=np.array([1.2, 1.9]), own_vibration=np.array([0.5, 2.7]))
+    assert moved.noticed and "1.2 of the vibration threshold (the encoder alone: 0.5)" in str(moved)
+    still = replace(moved, own_vibration=np.array([1.3, 2.7]))
+    assert still.hidden and "1.9 of the vibration threshold (the encoder alone: 2.7)" in str(still)
 
 
 def test_a_state_without_a_path_to_the_force_goes_without_a_bit():
