@@ -3,7 +3,11 @@
 import pytest
 from axe import findings
 
+from hapticlab.course.concepts.inventory import questions
 from hapticlab.course.exercise import Case, Exercise, Lab
+from hapticlab.grading.concepts.class_summary import summary
+from hapticlab.grading.concepts.pages import write_concept_pages
+from hapticlab.grading.concepts.paper import Paper
 from hapticlab.grading.pages.pages import write_pages
 from hapticlab.grading.report import ExerciseReport, Failing, Report
 
@@ -36,3 +40,18 @@ def test_nothing_is_cut_or_broken_and_axe_finds_nothing_serious(browser, tmp_pat
             assert not [text for text, count in page.evaluate(lines) if count > 1 and " " not in text]
             assert findings(page) == []
     page.close()
+
+
+@pytest.mark.wide
+def test_pages_of_concepts_fit_and_axe_finds_nothing_serious(browser, tmp_path):
+    wrong = {name: next(iter(question.wrong)) for name, (_, question) in questions().items()}
+    papers = [[Paper(name, {**wrong, **dict.fromkeys(list(wrong)[:right], "")}) for name in NAMES] for right in (3, 20)]
+    papers[1].append(Paper("dan", problem="it is not a notebook"))
+    paths = write_concept_pages(summary(*papers), papers[1], tmp_path)
+    for scheme, width in (("light", 1280), ("dark", 390)):
+        page = browser.new_page(color_scheme=scheme, viewport={"width": width, "height": 800})
+        for path in (paths[0], paths[-1]):
+            page.goto(path.as_uri())
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            assert findings(page) == []
+        page.close()

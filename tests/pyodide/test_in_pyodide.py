@@ -16,7 +16,9 @@ from both_ways import IN_PYODIDE, ROOT
 from in_pyodide import pytest_in_pyodide, run_in_pyodide, wheel
 from test_golden import GOLDEN
 
+from hapticlab.course.concepts.questionnaire import notebook_of
 from hapticlab.course.labs import find_labs
+from hapticlab.course.notebook import code_of
 
 LABS = [folder.number for folder in find_labs(ROOT / "labs")]
 #: run by .ci/run, all others by .ci/full
@@ -80,6 +82,15 @@ except EngineMissingError as missing:
     assert engine == f"wasm {len(LABS)}"
     assert board.startswith("host 0000, firmware")
     assert "wheel for every target" in " ".join(missing)
+
+
+@pytest.mark.wide
+def test_a_notebook_of_questions_runs_and_names_what_has_no_answer():
+    first, *others = code_of(notebook_of(3, "ada", "before"))
+    cells = [first, *(re.sub("^(q1.) = None", '\\1 = "a"', source) for source in others)]
+    code = "names = {'__name__': '__main__'}\nfor cell in cells:\n    exec(cell, names)"
+    printed = run_in_pyodide(code, cells=cells).splitlines()[-1]
+    assert printed.startswith("Not answered: q01, q02") and "q09, q20" in printed
 
 
 @pytest.mark.wide

@@ -10,9 +10,8 @@ CONCEPT = Concept(
             "source_of_the_leak",
             about="Where the energy of a sampled wall comes from",
             asks=(
-                "A handle without friction moves into a virtual wall and out again. It leaves the wall faster than it "
-                "entered. The picture shows the position and the force, which the motor holds from one sample to the next. "
-                "Where does the additional energy come from?"
+                "A handle without friction moves into a virtual wall and out again. The motor holds each force until the next "
+                "sample. The handle leaves the wall faster than it entered. Where does the additional energy come from?"
             ),
             right=(
                 "The held force belongs to the beginning of each period: it is too small on the way in and too large on the "
@@ -23,7 +22,6 @@ CONCEPT = Concept(
                 "friction_supplies": "The bearings and the cable store energy on the way in and return it on the way out.",
                 "encoder_makes_leak": "The encoder rounds the position, and the rounded position is too deep inside the wall.",
             },
-            picture='hl.devices.drawing("sample_and_hold")',
         ),
         Question(
             "leak_of_one_period",
@@ -52,8 +50,8 @@ CONCEPT = Concept(
             about="The energy that a contact generates if the sampling is faster",
             asks=(
                 "A machine moves a handle into a virtual wall and out again, always along the same path at the same speeds. "
-                "With the period $T$ the wall generates {E:g} µJ in total. How much does it generate if the period is "
-                "$T/{r:g}$?"
+                "The picture shows the position and the force of such a contact. With the period $T$ the wall generates {E:g} µJ "
+                "in total. How much does it generate if the period is $T/{r:g}$?"
             ),
             right="{right:.3g} µJ",
             wrong={
@@ -67,6 +65,7 @@ CONCEPT = Concept(
                 "one": lambda E, r: E / r**2,
                 "each": lambda E, r: E * r,
             },
+            picture='hl.devices.drawing("sample_and_hold")',
         ),
     ),
 )

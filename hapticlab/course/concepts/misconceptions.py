@@ -43,9 +43,9 @@ MISCONCEPTIONS = {
     "unit_twice": Misconception(
         "Conversion made twice", "The factor between two units is applied to the stiffness and to the position.", ("01",)
     ),
-    "larger_pulley_more_force": Misconception(
-        "A larger pulley pushes harder",
-        "A larger pulley on the motor is thought to increase the force, as a longer arm increases a torque.",
+    "larger_drum_more_force": Misconception(
+        "A larger drum pushes harder",
+        "A larger drum on the motor is thought to increase the force, as a longer arm increases a torque.",
         ("00", "09"),
     ),
     "force_is_torque": Misconception(

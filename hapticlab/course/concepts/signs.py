@@ -47,17 +47,17 @@ CONCEPT = Concept(
             },
         ),
         Question(
-            "larger_pulley",
-            about="A larger pulley on the motor of the paddle",
+            "larger_drum",
+            about="A larger drum on the motor of the paddle",
             asks=(
-                "A cable runs from the pulley on the shaft of the motor to the sector that carries the handle. The encoder is "
-                "on the shaft of the motor. You replace the pulley by one whose diameter is {r:g} times as large; nothing "
+                "A cable runs from the drum on the shaft of the motor to the sector that carries the handle. The encoder is "
+                "on the shaft of the motor. You replace the drum by one whose diameter is {r:g} times as large; nothing "
                 "else changes. What happens to the force at the handle at the same motor current, and to the counts per metre "
                 "of handle travel?"
             ),
             right="The force and the counts per metre are both divided by {r:g}.",
             wrong={
-                "larger_pulley_more_force": "The force is multiplied by {r:g}, and the counts per metre are divided by {r:g}.",
+                "larger_drum_more_force": "The force is multiplied by {r:g}, and the counts per metre are divided by {r:g}.",
                 "force_is_torque": "The force stays the same, and the counts per metre are divided by {r:g}.",
                 "sensor_apart": "The force is divided by {r:g}, and the counts per metre stay the same.",
             },

@@ -163,7 +163,8 @@ def _items(matched: Sequence[tuple[Paper, Paper]], scores: tuple[Array, Array]) 
     items = []
     for k, (answer, (concept, question)) in enumerate(questions().items()):
         counts = [Counter(pair[occasion].picked[answer] for pair in matched) for occasion in (0, 1)]
-        named = {"": "right", **{name: MISCONCEPTIONS[name].title for name in question.wrong}, None: "no answer"}
+        wrong: dict[str | None, str] = {name: MISCONCEPTIONS[name].title for name in question.wrong}
+        named = {"": "right", **wrong, None: "no answer"}
         chosen = [(words, counts[0][name], counts[1][name]) for name, words in named.items()]
         parts = float(easy[0][k]), float(easy[1][k])
         tells = float(telling[0][k]), float(telling[1][k])

@@ -70,12 +70,12 @@ def test_a_stiffness_in_newtons_per_millimetre(draws):
     check("number_for_newtons_per_metre", right, wrong, draws)
 
 
-def test_a_larger_pulley_by_virtual_work(draws):
+def test_a_larger_drum_by_virtual_work(draws):
     theta, r_p, r_s, r_h, torque, counts = sp.symbols("theta r_p r_s r_h torque counts", positive=True)
     travel = theta * r_p / r_s * r_h  # of the handle, for an angle of the motor
     force = torque / sp.diff(travel, theta)
     per_metre = counts / (2 * sp.pi) / sp.diff(travel, theta)
-    for numbers, _, texts in asked("larger_pulley", draws[:8]):
+    for numbers, _, texts in asked("larger_drum", draws[:8]):
         ratios = [sp.simplify(one.subs(r_p, numbers["r"] * r_p) / one) for one in (force, per_metre)]
         assert ratios == [pytest.approx(1 / numbers["r"])] * 2
         assert texts[""] == f"The force and the counts per metre are both divided by {numbers['r']:g}."
