@@ -123,6 +123,7 @@ DAMAGED = {
     "many rows": (lambda held: held.update(velocities=held["velocities"] * 50), "at most 12"),
     "an unknown frequency": (lambda held: held["rendered"]["frequency [Hz]"].__setitem__(0, None), "must hold numbers"),
     "a wall that is none": (lambda held: held["rendered"].update({"K [N/m]": 0}), "no impedance to compare with"),
+    "frequencies that fall": (lambda held: held["rendered"]["frequency [Hz]"].reverse(), "the frequencies must rise"),
     "a frequency of 0": (lambda held: held["rendered"]["frequency [Hz]"].__setitem__(0, 0), "above 0 Hz"),
 }  # fmt: skip
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import fields
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -122,7 +123,10 @@ def _checked(given, kind, key, named):
     if kind == "tuple[float, ...]":
         if not isinstance(given, list) or not 0 < len(given) <= LONGEST:
             raise refused(named, f"{key} must be a list of 1 to {LONGEST} numbers")
-        return tuple(math.nan if one is None and key in UNDECIDED else _number(one, key, named) for one in given)
+        numbers = tuple(math.nan if one is None and key in UNDECIDED else _number(one, key, named) for one in given)
+        if key.startswith("frequency") and any(a >= b for a, b in pairwise(numbers)):
+            raise refused(named, "the frequencies must rise")
+        return numbers
     value = _number(given, key, named)
     return int(value) if kind == "int" else value
 
