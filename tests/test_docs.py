@@ -24,7 +24,7 @@ README = (ROOT / "README.md").read_text("utf-8")
 MANUAL = [
     f"docs/{name}.md"
     for name in ("scenes", "live", "sharing", "site", "methods", "measuring", "limits", "people", "boards", "engines", "systems")
-] + [f"docs/{name}.md" for name in ("browser", "owners_guide", "bring_up_card", "faults", "SAFETY")]
+] + [f"docs/{name}.md" for name in ("browser", "two_paddles", "owners_guide", "bring_up_card", "faults", "SAFETY")]
 PAGES_THAT_RUN = ["README.md", *(path for path in MANUAL if "```python" in (ROOT / path).read_text("utf-8"))]
 
 

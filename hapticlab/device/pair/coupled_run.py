@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.shows_itself import ShowsItself
+from .run_plot import plot_coupled
 from .sides import BEATS
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from ...base.telemetry import Telemetry
 
 #: clocks are compared anew so often [s]
@@ -76,6 +79,10 @@ class CoupledRun(ShowsItself):
     to_right: LinkTimes
     to_left: LinkTimes
     fault: str | None = None
+
+    def plot(self) -> Figure:
+        """Return a figure: positions of both handles, and the forces of both motors."""
+        return plot_coupled(self)
 
     def __str__(self) -> str:
         lines = [

@@ -142,6 +142,8 @@ class TwoPaddles(ShowsItself):
         try:
             for side, place, speed in zip(self._sides, x, v, strict=True):
                 side.start(place, speed)
+                if self._realtime:
+                    side.source.warm()
         except BaseException:
             self._halt()
             raise

@@ -122,3 +122,28 @@ def test_a_board_is_not_given_twice_and_a_scene_must_hear():
         hl.devices.TwoPaddles(paddle(), paddle(), hl.laws.bilateral_coupling("position-force", role="leader")(k=5), side)
     with pytest.raises(hl.errors.PaddleError, match="same T"):
         hl.devices.TwoPaddles(paddle(), paddle(T=5e-4), side)
+
+
+@pytest.mark.parametrize("pace", ["", "?pace=real"])
+def test_a_simulated_paddle_and_a_board_follow_each_other(pace):
+    """In virtual time, and by the clock: then the simulated one keeps up with it."""
+    side = hl.laws.bilateral_coupling()(k=50, b=0.2)
+    with hl.connect(f"sim://hapkit{pace}") as board:
+        board.exchange.port.lead(0.0)
+        run = hl.devices.TwoPaddles(paddle(hand=hl.Hand("pinch", intent=lambda t: 0.01 + 0 * t)), board, side).run(0.3)
+    assert run.fault is None and run.right.x[-1] > 1e-3 and run.right.F[-1] < 0 < run.left.F[-1]
+
+
+def test_it_is_set_while_it_runs_and_drawn():
+    pair = hl.devices.TwoPaddles(paddle(), paddle(), *sides("position-position", k=50))
+    with pytest.raises(hl.errors.PaddleError, match=r"pair.start\(\)"):
+        pair.wait(0.1)
+    pair.start(x=(0.002, 0.0))
+    pair.wait(0.02)
+    pair.set(k=100)
+    pair.wait(0.02)
+    run = pair.stop()
+    apart = run.left.x[2:] - run.right.x[1:-1]
+    assert run.left.F[2:][[5, -5]] == pytest.approx((np.array([50, 100]) * apart[[5, -5]]), rel=1e-5)
+    assert [values for _, values in run.left.changes] == [{"k": 100.0}]
+    assert "the left handle moves between" in run.plot().alt
