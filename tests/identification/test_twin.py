@@ -165,5 +165,5 @@ def test_the_twin_of_a_board_has_the_rest_from_its_settings():
         twin = hl.identify.paddle(board, kinds=("steps",), confidence=0.999).profile("mine", base=board)
     for name in ("m", "b", "coulomb", "sensor_delay"):
         assert getattr(body, name) == pytest.approx(twin[name].value, abs=3 * twin[name].half_width + 2e-5), name
-    assert twin.source == "board 12AB, measured: settings of a board, calibrated on 20261120"
+    assert twin.source == "board 12AB, measured: settings of a board, calibrated on 2026-11-20"
     assert (twin.force_full, twin.carrier) == (8.0, 62_500) and twin.counts_per_metre == pytest.approx(78125)

@@ -59,7 +59,7 @@ def is_the_motor(lab):
 
 
 CLAIMS = [
-    ("The force at full duty and the Jacobian $J$ of lab 00 give the torque constant", is_the_motor, ""),
+    ("the Jacobian $J$ of lab 00 give the torque constant", is_the_motor, ""),
     ("how much stiffness do the lags", lambda lab: 0 < lab.walls[0] <= lab.walls[1] * (1 + 1e-9), ""),
     (
         "because it *stops on the way*, at $v = 0$, where friction holds it",
