@@ -2,13 +2,12 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-TURNED = "The sign is wrong: F is the force of your handle on the spring, so it is positive where your handle is ahead of the other one."
+TURNED = "The sign is wrong: your handle pushes the spring in +x where your handle is ahead of the other one."
 NO_OTHER = "You used your own position alone. That spring is fixed to the table, and your partner is not in it."
 SUM = "You added the two positions. A spring between two handles is stretched by their difference."
-GROUNDED = "Your damper is fixed to the table: it also resists when both handles move together. Use the difference of the velocities."
+ADDED = "You added the two velocities. The damper is at rest when both handles move together, so use the difference."
 DAMPER_TURNED = "The damper has the wrong sign. Like the spring, it resists where your handle moves faster than the other one."
-NO_DAMPER = "The damper is missing."
-ONE_MOTION = "Both motions have the same damping in your answer. The heard position has the sign + in one motion and - in the other."
+ONE_MOTION = "Your two dampings are equal. The heard position has the sign + in one motion and - in the other."
 SIGNS = "Both signs of k d are wrong: together, your handle runs ahead of the late position and is held back."
 SWAPPED = "These are the right two dampings in the wrong order."
 ONCE = "Against each other, your damper sees your own velocity and the other's, which is opposite: its force is 2 b v."
@@ -69,7 +68,7 @@ LAB = Lab(
                     },
                     [0.0, 0.4, 0.5],
                     unit="N",
-                    slips={(0.2, 0.6, 0.7): GROUNDED, (0.0, -0.4, 0.5): DAMPER_TURNED, (0.0, 0.0, 0.5): NO_DAMPER},
+                    slips={(0.4, 0.8, 0.9): ADDED, (0.0, -0.4, 0.5): DAMPER_TURNED, (0.0, -0.4, -0.5): TURNED},
                 ),
             ),
             hint="By how much is the spring stretched if your handle is ahead of the other? When is the damper at rest?",
@@ -221,7 +220,7 @@ LAB = Lab(
                     slips={10.0: AT_REST},
                 ),
             ),
-            hint="How much energy is owed? How much does a damper dissipate in one period, and can it dissipate a negative energy?",
+            hint="How much energy is owed? How much does a damper dissipate in one period?",
             matters="Nothing in this count depends on the delay, so it also holds where the delay changes.",
         ),
         Exercise(
@@ -229,7 +228,11 @@ LAB = Lab(
             points=1,
             asks="the factor of the force, 0 to 1, from the silence, hold and fade [s]",
             cases=(
-                Case({"silence": 0.03, "hold": 0.05, "fade": 0.1}, 1.0, slips={1.2: NOT_CLIPPED, 0.8: NO_HOLD, 0.7: NO_HOLD, 0.0: RISES}),
+                Case(
+                    {"silence": 0.03, "hold": 0.05, "fade": 0.1},
+                    1.0,
+                    slips={1.2: NOT_CLIPPED, 0.8: NO_HOLD, 0.7: NO_HOLD, 0.0: RISES},
+                ),
                 Case(
                     {"silence": 0.075, "hold": 0.05, "fade": 0.1},
                     0.75,

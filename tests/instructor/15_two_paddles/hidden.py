@@ -16,7 +16,13 @@ def cases(random):
         "felt_damping": lambda: [{"k": draw(10, 300), "K": draw(0, 500), "d": draw(1e-3, 0.1)} for _ in range(3)],
         "wave_side": lambda: [{"b": draw(0.1, 4), "v": draw(-0.4, 0.4), "w": draw(-0.4, 0.4)} for _ in range(3)],
         "repaying_damper": lambda: [
-            {"heard": draw(0, 4e-3), "given": given, "dx": draw(2e-4, 2e-3) * sign, "T": draw(5e-4, 2e-3), "alpha_max": draw(1, 9)}
+            {
+                "heard": draw(0, 4e-3),
+                "given": given,
+                "dx": draw(2e-4, 2e-3) * sign,
+                "T": draw(5e-4, 2e-3),
+                "alpha_max": draw(1, 9),
+            }
             for given, sign in ((0.005, 1), (0.0041, -1), (0.0, 1), (0.02, -1))
         ],
         "gain": lambda: [

@@ -49,10 +49,10 @@ def gain(silence, hold, fade):
 
 which_coupling = "d"
 discussion = """
-Over 100 ms I choose position-position with a soft spring of about 20 N/m, a passivity controller and a fade on each side. The table
-gives a limit of about 80 N/m for two pinching hands at long delays, but only about 2 N/m for any two hands, so the stiffness alone
-guarantees nothing and the controller has to. With k = 20 N/m we both feel a damper of 2 k d = 4 N s/m that the box does not have, and
-the box feels softer than it is. With waves of 1 N s/m we would feel a spring of only 10 N/m and a mass of 100 g that is not there. If
-one person lets go, the other one pulls a free handle on an undamped spring, so I would stop when a hand is missing. If the link falls
-silent, the force is zero after 100 ms.
+Over 100 ms I choose position-position with a soft spring of about 20 N/m, a passivity controller and a fade on each side.
+The table gives a limit of about 80 N/m for two pinching hands at long delays, but only about 2 N/m for any two hands, so
+the stiffness alone guarantees nothing and the controller has to. With k = 20 N/m we both feel a damper of 2 k d = 4 N s/m
+that the box does not have, and the box feels softer than it is. With waves of 1 N s/m we would feel a spring of only 10
+N/m and a mass of 100 g that is not there. If one person lets go, the other one pulls a free handle on an undamped spring,
+so I would stop when a hand is missing. If the link falls silent, the force is zero after 100 ms.
 """

@@ -10,8 +10,8 @@ x_other, v_other = hl.parameters("x_other v_other", units="m m/s", values=(0, 0)
 
 WRONG = [
     ("one_side", hl.Scene(force=k * (x_other - x(n)) + b * (v_other - v(n)))),
-    ("one_side", hl.Scene(force=k * (x(n) - x_other) + b * v(n) + 0 * v_other)),
-    ("one_side", hl.Scene(force=k * (x(n) + x_other) + b * (v(n) + v_other))),
+    ("one_side", hl.Scene(force=k * (x(n) - x_other) + b * (v(n) + v_other))),
+    ("one_side", hl.Scene(force=k * (x(n) + x_other) + b * (v(n) - v_other))),
     ("one_side", hl.Scene(force=k * (x(n) - x_other) + b * (v_other - v(n)))),
     ("two_dampers", lambda k, b, d: [k * d, k * d]),
     ("two_dampers", lambda k, b, d: [k * d, b - k * d]),
