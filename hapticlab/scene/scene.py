@@ -143,6 +143,12 @@ class Scene(Typeset):
         return self.__dict__["_coordinates"]
 
     @property
+    def signals(self) -> tuple[sp.Expr, ...]:
+        """The signals that its equations define, at sample n, in alphabetical order."""
+        defined = [e.lhs for e in self.eom if isinstance(e, sp.Eq) and getattr(type(e.lhs), "role", None) == "signal"]
+        return tuple(sorted(defined, key=str))
+
+    @property
     def models(self) -> tuple[Mechanics, ...]:
         """The models among the equations of motion, such as those of :func:`~hapticlab.scene.mechanics.lagrange.lagrange`."""
         return tuple(e for e in self.eom if isinstance(e, Mechanics))

@@ -33,7 +33,7 @@ def moving_picture(scene, paddle=None, picture=None):
         Its largest force scales the force arrow.
     picture : str, sequence of Placed, or callable, optional
         Instead: a name in ``hl.library``; shapes in their places, as ``hl.shapes.Circle("5 mm").at(y=z)``, drawn beside the
-        handle; or a function ``draw(axes, *, x, ...)`` of its own, which takes what it names of coordinates and
+        handle; or a function ``draw(axes, *, x, ...)`` of its own, which takes what it names of coordinates, signals and
         parameters, and draws with :class:`~hapticlab.library.sketch.Sketch`. A shared file needs it to use functions of
         NumPy on what moves, ``np.cos`` and not ``math.cos``, and ``np.where`` where an ``if`` would go many ways.
 
@@ -74,7 +74,8 @@ class MovingPicture:
     def __init__(self, scene, drawing, full_force):
         self.scene, self._drawing, self._full = scene, drawing, full_force
         names = named_by(drawing)
-        self.channels = {type(q).__name__: q for q in scene.coordinates if type(q).__name__ in names}
+        states = {type(q).__name__: q for q in (*scene.coordinates, *scene.signals)}
+        self.channels = {name: q for name, q in states.items() if name in names}
         self._names = names & ({*self.channels, "t", "T"} | set(scene.parameters))
         self.box, self.along = self._fit()
         ends = self.box[:2] if abs(self.along[0]) > 0.5 else self.box[2:]

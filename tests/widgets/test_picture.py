@@ -132,6 +132,19 @@ def test_a_picture_of_ones_own():
         moving_picture(scene, picture="detent")
 
 
+def test_a_shape_follows_a_signal():
+    h, w = hl.signal("h", unit="m", initial=hl.x(hl.n)), hl.parameters("w", units="m", values=0.002)
+    load = sp.Max(hl.x(hl.n) - w, sp.Min(hl.x(hl.n) + w, h(hl.n - 1)))
+    scene = hl.Scene(hl.parameters("k", units="N/m", values=100) * h(hl.n), [sp.Eq(h(hl.n), load)])
+    assert scene.signals == (h(hl.n),)
+    picture = moving_picture(scene, picture=[hl.shapes.Box(0.004, 0.006).at(x=h(hl.n), y="20 mm")])
+    assert picture.channels == {"h": h(hl.n)}  # watched, whatever the scene watches
+    areas = of_kind(picture.draw({**STATE, "h": 0.007}), "area")
+    assert any(np.allclose(points.mean(axis=0), (0.007, 0.02), atol=1e-12) for points, _ in areas)
+    view = hl.live(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), scene, picture=[hl.shapes.Box(0.004, 0.006).at(x=h(hl.n))])
+    assert view.rehearsal.h[-1] == pytest.approx(view.rehearsal.x[-1], abs=0.0021)
+
+
 def test_a_still_picture_has_words():
     data, words = moving_picture(hl.library.mass_spring_damper()).still({"x": 0.012, "z": 0.01, "F": 1.5, "intent": 0.02})
     assert data.startswith(b"\x89PNG")

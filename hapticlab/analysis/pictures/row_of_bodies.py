@@ -13,9 +13,10 @@ LOOKED_AT = 4
 
 
 def start_of(scene):
-    """Return where the handle and the coordinates are at the first sample; 0 where that is not known."""
-    start = {"x": 0.0} | {type(q).__name__: 0.0 for q in scene.coordinates}
-    for q in scene.coordinates:
+    """Return where the handle, the coordinates and the signals are at the first sample; 0 where that is not known."""
+    states = (*scene.coordinates, *scene.signals)
+    start = {"x": 0.0} | {type(q).__name__: 0.0 for q in states}
+    for q in states:
         try:
             value, _ = formula(type(q).initial)
             start[type(q).__name__] = float(value({**start, **scene.values})[0])

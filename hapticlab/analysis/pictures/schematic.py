@@ -32,9 +32,9 @@ class Schematic:
     Attributes
     ----------
     names : set of str
-        Coordinates and parameters that the picture depends on.
+        Coordinates, signals and parameters that the picture depends on.
     start : dict of str to float
-        Where it is drawn unless told: the handle at 0, each coordinate where it starts.
+        Where it is drawn unless told: the handle at 0, each coordinate and signal where it starts.
     """
 
     def __init__(self, scene, shapes=()):
@@ -54,7 +54,7 @@ class Schematic:
         self.ties = [(tie, *value_of(tie.spring)) for tie in self.parts.ties if {tie.first, tie.second} <= movers]
         self.layout = self._lay_out()
         needed = [wall.names for wall in self.walls] + [names for _, names in self.rods.values()] + [tie[2] for tie in self.ties]
-        known = {type(q).__name__ for q in scene.coordinates} | set(scene.parameters)
+        known = {type(q).__name__ for q in (*scene.coordinates, *scene.signals)} | set(scene.parameters)
         self.names = placed.union(self.bodies, self.rods, *needed) & known
 
     def _lay_out(self):
