@@ -239,19 +239,19 @@ LAB = Lab(
             points=1,
             asks="which machine gives energy to a slow hand: a, b, c or d",
             options={
-                "a": "a button whose force drops beyond 8 mm, and rises again below 6 mm",
+                "a": "a magnet that pulls the handle in once it was beyond 8 mm, until it is back below 6 mm",
                 "b": "a gear with play, whose load has dry friction",
-                "c": "a button whose force rises beyond 8 mm, and drops again below 6 mm",
-                "d": "a button whose force rises beyond 8 mm, and drops again below 8 mm",
+                "c": "a guard that pushes the handle out once it was beyond 8 mm, until it is back below 6 mm",
+                "d": "a cushion that pushes the handle out wherever it is beyond 8 mm",
             },
             cases=(
                 Case(
                     {},
                     "c",
                     slips={
-                        "a": "The way in has the larger force here, so the hand pays more than it gets back.",
+                        "a": "On the way from 6 to 8 mm the magnet does not help, and on the way back it pulls against the hand.",
                         "b": "Friction opposes the load in both directions. The hand pays in both.",
-                        "d": "With one threshold both ways have the same force, so the loop has no area if the hand is slow.",
+                        "d": "The cushion has no memory: both ways have the same force, so the loop has no area.",
                     },
                 ),
             ),
