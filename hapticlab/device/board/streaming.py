@@ -75,7 +75,7 @@ class Streaming:
         """Start the scene, or wait for the handle to be led to its stops where the board does not know where it is."""
         self.stop()
         self.paddle.clear()
-        self.fault, self.waits = None, LEAD if self._is_lost() else ""
+        self.fault, self.waits = None, LEAD if self.is_lost() else ""
         if not self.waits:
             self._begin()
 
@@ -95,7 +95,7 @@ class Streaming:
         Where time is virtual it passes for as many ticks as there are places less one; nobody looks at the places.
         """
         if self.waits:
-            if not self._is_lost():
+            if not self.is_lost():
                 self.waits = ""
                 self._begin()
             return None
@@ -160,8 +160,8 @@ class Streaming:
         self._leash = exchange.beating = Leash(exchange)
         self._until = self._heard = exchange.now()
 
-    def _is_lost(self):
-        """Whether the board waits for the handle to be led to its stops; a simulated one is put to the middle."""
+    def is_lost(self):
+        """Return whether the board waits for the handle to be led to its stops; a simulated one is put to the middle."""
         paddle = self.paddle
         if paddle.settings is None or hasattr(paddle.exchange.port, "lead"):
             return False

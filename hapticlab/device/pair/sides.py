@@ -56,11 +56,10 @@ class Side:
                 "position-force one is the leader and one the follower"
             )
 
-    def start(self, x, v):
-        """Start the scene with the handle at x [m] and v [m/s]; its coupling gives no force before the other is heard."""
+    def start(self):
+        """Start the scene; its coupling gives no force before the other is heard."""
         self.rows, self.changes, self._values, self.arrivals, self.failed = [], [], named_values(self.source.program), [], ""
         self._waits = None
-        self._place(x, v)
         self.source.start()
 
     def advance(self, ticks, clock):
@@ -122,7 +121,8 @@ class SimulatedSide(Side):
         super().__init__(name, Stepping(paddle, scene, own_hand=True))
         self._begin = 0.0, 0.0
 
-    def _place(self, x, v):
+    def prepare(self, x, v):
+        """Put the handle to x [m] with v [m/s]."""
         if (x, v) != self._begin:
             source, self._begin = self.source, (x, v)
             self.source = Stepping(source.paddle, source.program, x=x, v=v, own_hand=True)
@@ -146,12 +146,16 @@ class BoardSide(Side):
         super().__init__(name, Streaming(paddle, scene))
         self.realtime = not paddle.exchange.lockstep
 
-    def _place(self, x, v):
+    def prepare(self, x, v):
+        """Have the handle led to its stops where the board does not know its place, with the motor off."""
         if x or v:
             raise PaddleError(
                 f"{self.name}: x = {x:g} m, v = {v:g} m/s: on a board the handle starts where it is. Move the handle there, "
                 "or use a SimulatedPaddle"
             )
+        if self.source.is_lost():
+            print(f"the {self.name} paddle:")
+            self.source.paddle.home()
 
     def due(self, now):
         """Time passes there by itself; one tick is asked for in virtual time."""

@@ -138,12 +138,14 @@ class TwoPaddles(ShowsItself):
             raise PaddleError("the pair runs already; end it first: pair.stop()")
         self._fault, self._now = None, 0.0
         self._relays = [Relay(self.delay, self.jitter, self._loss, [self._seed, k]) for k in range(2)]
+        for side, place, speed in zip(self._sides, x, v, strict=True):
+            side.prepare(place, speed)  # both, before either motor is on
         self._running = True
         try:
-            for side, place, speed in zip(self._sides, x, v, strict=True):
-                side.start(place, speed)
+            for side in self._sides:
                 if self._realtime:
                     side.source.warm()
+                side.start()
         except BaseException:
             self._halt()
             raise
@@ -220,6 +222,8 @@ class TwoPaddles(ShowsItself):
             while self._running and self._fault is None:
                 self._turn()
                 yield LOOK
+        except Exception as problem:
+            self._fault = f"the relay ended: {type(problem).__name__}: {problem}"
         finally:
             if self._running:
                 self._motors_off()

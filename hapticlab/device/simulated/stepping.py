@@ -194,8 +194,9 @@ class Stepping:
     def _inputs(self, intent):
         """Return the linked program's inputs, in the order of SimulatedPaddle.inputs."""
         ticks, columns = len(intent) - 1, []
-        if self.held and self.paddle.plant.ramp:
-            columns += [intent[:-1]] if self.paddle.plant.spring else []
+        plant = self._loop().plant
+        if plant.ramp:
+            columns += [intent[:-1]] if plant.spring else []
             columns.append((intent[1:] - intent[:-1]) / self.paddle.T)
         for (deviation, draw), there in zip(self._noise, (True, self.held), strict=True):
             if deviation and there:
@@ -207,7 +208,7 @@ class _Loop:
     """A scene's program linked to a paddle, ready to run."""
 
     def __init__(self, program, paddle, engine, begin):
-        self.linked, self.plant_values = link(program, paddle), paddle.plant_values(*begin)
+        self.plant, self.linked, self.plant_values = paddle.plant, link(program, paddle), paddle.plant_values(*begin)
         self.loaded = load_linked(self.linked, engine)
         self.names = [c.name for c in self.linked.states]
 

@@ -55,6 +55,7 @@ def test_a_pole_of_the_loop_written_out_leaves_the_circle_there(architecture, ti
     assert below < 1 + 1e-9 < 1 + 1e-7 < above
 
 
+@pytest.mark.always("*-9")
 @pytest.mark.parametrize("ticks", [1, 9, 50])
 @pytest.mark.parametrize("hand", [None, hl.Hand("pinch")])
 def test_like_handles_have_the_limits_of_their_two_motions_together_and_against_each_other(hand, ticks):
@@ -95,6 +96,7 @@ def test_what_every_pair_of_hands_allows_is_what_heavy_hands_allow():
         assert every.K == pytest.approx(hl.stability.coupling_limit(heavy, heavy, delay="9 ms", b=b_c).K, rel=1e-3)
 
 
+@pytest.mark.always("wave")
 @pytest.mark.parametrize("architecture", ARCHITECTURES)
 def test_no_pair_of_passive_hands_is_unstable_where_it_says_so(architecture):
     """Masses and dampers drawn, one of the two with a spring; light and heavy ones on either side."""
