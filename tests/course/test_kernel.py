@@ -33,7 +33,7 @@ def test_a_check_shows_a_card_alone_and_a_kernel_lives_on(tmp_path, monkeypatch)
     assert "it raises SystemExit in line 2 of its cell: over" in text[4]
     assert notebook.cells[5].outputs[-1].text == "False\n"
     assert text[6].startswith("00.which_way: right in the public cases (worth 1 point)\n  right: c\n")
-    assert text[6].endswith("this lab: 1 of 6 exercises right in the public cases (counts for no mark)\n  next: sign_evidence")
+    assert text[6].endswith("this lab: 1 of 7 exercises right in the public cases (counts for no mark)\n  next: sign_evidence")
     assert json.loads((tmp_path / ".hapticlab-progress.json").read_text("utf-8")) == {"00": ["which_way"]}
     for cell in notebook.cells[:-1]:
         assert not [o for o in cell.outputs if o.output_type == card and "<script" in o.data["text/html"]]

@@ -12,7 +12,7 @@ from hapticlab.course.exercise import Case
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.formats import write
 from hapticlab.grading.formats.words import for_student, state
-from hapticlab.grading.pages.fronts import class_fronts, on_front
+from hapticlab.grading.pages.fronts import class_fronts
 from hapticlab.grading.pages.pages import write_pages
 from hapticlab.grading.report import ExerciseReport, Failing, Report
 from hapticlab.grading.run import run
@@ -135,4 +135,8 @@ def test_class_page_of_designs_names_nobody_and_has_every_number(graded, tmp_pat
 
 def test_front_of_a_class_is_what_no_other_design_beats():
     figures = [(1.0, 20.0, 0.5), (0.5, 30.0, 0.5), (1.0, 20.0, 0.4), (0.5, 30.0, 0.5)]
-    assert [on_front(one, figures) for one in figures] == [True, True, False, True]
+    rows = [{"scene": {}, "figures": one, "why": "", "points": {}, "dominates": [], "public": True} for one in figures]
+    made = [ExerciseReport("design", "design", points=3.0, answered=True, designs=(row,)) for row in rows]
+    (scene,) = class_fronts([Report(f"student {k}", "43", "A budget", "", exercises=(one,)) for k, one in enumerate(made)])
+    assert {one["figures"] for one in scene["answers"] if not one["front"]} == {figures[2]}
+    assert [one["number"] for one in scene["answers"]] == [1, 2, 3, 4] and scene["figure"].count("<circle") == 2 * len(figures)

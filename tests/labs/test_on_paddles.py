@@ -31,8 +31,6 @@ IN_USE = f'my_paddle = hl.devices.profile("{NOMINAL}")'
 #: paddles for which a lab may promise nothing, but whose cells all run: without an encoder and a force limit, with counts of
 #: 0.74 mm, with a weak motor, and without damping
 UNUSUAL = {"eth": "eth", "longhorn": "longhorn", "motor_shield": "motor_shield", "undamped": f'{NOMINAL}").at(b="0 N*s/m'}
-#: a lab without claims is run on the nominal paddle alone
-CLAIMED = [name for name in FOLDERS if (ANSWERS / name / "claims.py").exists()]
 #: fewer statements about the paddle than this are not a lab
 FEWEST = 5
 
@@ -40,7 +38,7 @@ FEWEST = 5
 def on_paddles():
     """Yield each lab on each paddle: on the nominal one and on one other for every change, on all of them at times."""
     for number, name in enumerate(FOLDERS):
-        for paddle in (NOMINAL, *OTHERS) if name in CLAIMED else (NOMINAL,):
+        for paddle in (NOMINAL, *OTHERS):
             often = paddle in (NOMINAL, OTHERS[number % len(OTHERS)])
             yield pytest.param(name, paddle, id=f"{name}-{paddle}", marks=[] if often else [pytest.mark.slow])
 
@@ -54,8 +52,6 @@ def test_solved_lab_earns_everything_and_says_what_is_true(name, paddle, record_
     assert found.problems == []
     assert [m for m in found.marks if m.earned != m.points] == []
     assert found.earned == folder.lab().points
-    if name not in CLAIMED:
-        return
     lab = SimpleNamespace(**{**found.names, "printed": found.printed})
     for words, holds, unless in claims(name):
         if not holds(lab):
@@ -90,8 +86,6 @@ def test_cells_run_on_unusual_paddles(name, paddle):
 
 @pytest.mark.parametrize("name", FOLDERS)
 def test_claims_stand_in_the_text(name):
-    if name not in CLAIMED:
-        return
     notebook = read(FOLDERS[name].notebook)
     text = " ".join(text_of(notebook).split())
     assert [words for words, _, _ in claims(name) if words not in text] == []

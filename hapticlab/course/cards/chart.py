@@ -37,7 +37,7 @@ def chart(lines, labels, alt):
     '<svg role="img" aria-label="rises" vie'
     """
     lines = {name: tuple(map(bounded, line)) for name, line in lines.items()}
-    across, up = (_span(several) for several in zip(*lines.values(), strict=True))
+    across, up = (span(several) for several in zip(*lines.values(), strict=True))
     marks = axis_ticks(*up)
     left = 34 + 7.5 * max((len(text) for _, text in marks), default=1)
 
@@ -47,11 +47,8 @@ def chart(lines, labels, alt):
 
     grid = [_up_tick(place(tick, 1), text, left) for tick, text in marks]
     grid += [_across_tick(place(tick, 0), text) for tick, text in axis_ticks(*across, most=8, whole=labels[0] in (SAMPLE, POINT))]
-    grid.append(
-        f'<text x="{(left + WIDTH) / 2:.0f}" y="{HEIGHT - 8}" text-anchor="middle">{clean(labels[0], 60)}</text>'
-        f'<text x="14" y="{(ABOVE + HEIGHT - BELOW) / 2:.0f}" text-anchor="middle" '
-        f'transform="rotate(-90 14 {(ABOVE + HEIGHT - BELOW) / 2:.0f})">{clean(labels[1], 40)}</text>'
-    )
+    grid.append(words((left + WIDTH) / 2, HEIGHT - 8, clean(labels[0], 60)))
+    grid.append(words(14, (ABOVE + HEIGHT - BELOW) / 2, clean(labels[1], 40), turned=True))
     joined = labels[0] != POINT
     for k, (name, (x, y)) in enumerate(lines.items()):
         picked = _thinned(y)
@@ -65,12 +62,29 @@ def picture(width, height, inside, alt):
     return f'<svg role="img" aria-label="{clean(alt, 1000)}" viewBox="0 0 {width} {height}" width="{width}">{inside}</svg>'
 
 
+def words(x, y, escaped, *, anchor="middle", turned=False):
+    """Words of a picture at x and y [pixels]; ``anchor`` is what of them is there, turned ones rise."""
+    turn = f' transform="rotate(-90 {x:.0f} {y:.0f})"' if turned else ""
+    return f'<text x="{round(x, 1):g}" y="{round(y, 1):g}" text-anchor="{anchor}"{turn}>{escaped}</text>'
+
+
+def disc(x, y, fill, radius):
+    """A disc of a picture, or a ring if it is filled with the colour of the page."""
+    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{fill}" stroke="{COLD}" stroke-width="2"/>'
+
+
+def cross(x, y, half):
+    """A cross of a picture."""
+    both = f"M{x - half:.1f},{y - half:.1f}l{2 * half},{2 * half}m0,-{2 * half}l-{2 * half},{2 * half}"
+    return f'<path d="{both}" stroke="{WARM}" stroke-width="2"/>'
+
+
 def bounded(many):
     """Numbers whose sums do not overflow; what is not finite becomes NaN, a gap."""
     return np.where(np.isfinite(many), np.clip(many, -HUGE, HUGE), np.nan)
 
 
-def _span(several):
+def span(several):
     """The ends of an axis with some room beyond what is drawn."""
     finite = np.concatenate([line[np.isfinite(line)] for line in several])
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
@@ -92,17 +106,11 @@ def axis_ticks(low, high, most=5, whole=False):
 
 
 def _up_tick(y, text, left):
-    return (
-        f'<path d="M{left:.0f},{y:.1f}H{WIDTH - 4}" stroke="#ddd"/>'
-        f'<text x="{left - 6:.0f}" y="{y + 4:.1f}" text-anchor="end">{text}</text>'
-    )
+    return f'<path d="M{left:.0f},{y:.1f}H{WIDTH - 4}" stroke="#ddd"/>' + words(left - 6, y + 4, text, anchor="end")
 
 
 def _across_tick(x, text):
-    return (
-        f'<path d="M{x:.1f},{HEIGHT - BELOW}v5" stroke="{GREY}"/>'
-        f'<text x="{x:.1f}" y="{HEIGHT - BELOW + 18}" text-anchor="middle">{text}</text>'
-    )
+    return f'<path d="M{x:.1f},{HEIGHT - BELOW}v5" stroke="{GREY}"/>' + words(x, HEIGHT - BELOW + 18, text)
 
 
 def _thinned(line):
@@ -132,11 +140,9 @@ def _line(name, across, up, joined):
 
 
 def _mark(name, x, y):
-    if name == "got":
-        return f'<path d="M{x - 4:.1f},{y - 4:.1f}l8,8m0,-8l-8,8" stroke="{WARM}" stroke-width="2"/>'
-    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.5" fill="#fff" stroke="{COLD}" stroke-width="2"/>'
+    return cross(x, y, 4) if name == "got" else disc(x, y, "#fff", 4.5)
 
 
 def _key(name, x, joined):
     ends = np.array([x, x + 34.0] if joined else [x + 32.0])
-    return _line(name, ends, np.full(len(ends), 14.0), joined) + f'<text x="{x + 46:.0f}" y="18">{clean(name, 30)}</text>'
+    return _line(name, ends, np.full(len(ends), 14.0), joined) + words(x + 46, 18, clean(name, 30), anchor="start")

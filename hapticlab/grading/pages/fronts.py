@@ -2,9 +2,13 @@
 
 import re
 from collections import Counter
+from math import nan
 
-from ...base.drawing import COLD, WARM
-from ...course.cards.chart import GREY, axis_ticks, picture
+import numpy as np
+
+from ...analysis.budget.measured import MeasuredDesign
+from ...base.drawing import COLD
+from ...course.cards.chart import GREY, axis_ticks, cross, disc, picture, span, words
 from ...course.cards.page_text import clean
 from ..formats.words import points
 
@@ -43,11 +47,17 @@ def class_fronts(graded):
 def _scene(name, several):
     first = several[0][0]
     feasible = [(row, one) for row, one in several if row["figures"]]
-    reached = sorted((row["figures"][1], *row["figures"], row["dominates"], points(one.earned)) for row, one in feasible)
-    all_ = [figures[1:4] for figures in reached]
+    designs = [(MeasuredDesign({}, row["figures"][0], nan, *row["figures"][1:]), row, one) for row, one in feasible]
+    order = sorted(designs, key=lambda line: (line[0].load, line[0].figures, line[1]["dominates"], line[2].earned))
     answers = [
-        {"number": k + 1, "figures": line[1:4], "dominates": line[4], "earned": line[5], "front": on_front(line[1:4], all_)}
-        for k, line in enumerate(reached)
+        {
+            "number": number,
+            "figures": design.figures,
+            "dominates": row["dominates"],
+            "earned": points(one.earned),
+            "front": not any(other.dominates(design) for other, *_ in designs),
+        }
+        for number, (design, row, one) in enumerate(order, start=1)
     ]
     failed = Counter(_without_words(row["why"]) for row, _ in several if not row["figures"])
     found = {"name": name, "scene": first["scene"], "points": first["points"], "answers": answers, "of": several[0][1].points}
@@ -59,18 +69,6 @@ def _without_words(why):
     for written, told in WRITTEN:
         why = written.sub(told, why)
     return why
-
-
-def on_front(mine, others):
-    """Whether no other figures are as good in all three and better in one.
-
-    Examples
-    --------
-    >>> on_front((1.0, 20.0, 0.5), [(1.0, 20.0, 0.5), (0.9, 30.0, 0.5)]), on_front((1.0, 20.0, 0.5), [(1.0, 19.0, 0.5)])
-    (True, False)
-    """
-    error, load, margin = mine
-    return not any(o[0] <= error and o[1] <= load and o[2] >= margin and tuple(o) != tuple(mine) for o in others)
 
 
 def figure(name, reference, answers):
@@ -87,38 +85,23 @@ def figure(name, reference, answers):
 def _panel(number, place, label, better, reference, answers):
     left, right = number * PANEL + LEFT, (number + 1) * PANEL - 14
     drawn = [*(one["figures"] for one in answers), *reference.values()]
-    ends = [_span([figures[axis] for figures in drawn]) for axis in (1, place)]
+    ends = [span([np.array([figures[axis] for figures in drawn])]) for axis in (1, place)]
 
     def at(load, up):
         across, high = ((value - low) / (top - low) for value, (low, top) in zip((load, up), ends, strict=True))
         return left + across * (right - left), HEIGHT - BELOW - high * (HEIGHT - BELOW - ABOVE)
 
-    parts = [_text((left + right) / 2, 20, better), _text((left + right) / 2, HEIGHT - 8, "load of the board [%]")]
-    parts.append(_text(left - 48, (ABOVE + HEIGHT - BELOW) / 2, label, turned=True))
+    parts = [words((left + right) / 2, 20, better), words((left + right) / 2, HEIGHT - 8, "load of the board [%]")]
+    parts.append(words(left - 48, (ABOVE + HEIGHT - BELOW) / 2, label, turned=True))
     for tick, text in axis_ticks(*ends[1]):
         y = at(ends[0][0], tick)[1]
-        parts += [f'<path d="M{left},{y:.1f}H{right}" stroke="#ddd"/>', _text(left - 6, y + 4, text, anchor="end")]
+        parts += [f'<path d="M{left},{y:.1f}H{right}" stroke="#ddd"/>', words(left - 6, y + 4, text, anchor="end")]
     for tick, text in axis_ticks(*ends[0]):
         x = at(tick, ends[1][0])[0]
-        parts += [f'<path d="M{x:.1f},{HEIGHT - BELOW}v5" stroke="{GREY}"/>', _text(x, HEIGHT - BELOW + 18, text)]
+        parts += [f'<path d="M{x:.1f},{HEIGHT - BELOW}v5" stroke="{GREY}"/>', words(x, HEIGHT - BELOW + 18, text)]
     for one in sorted(answers, key=lambda one: one["front"]):
-        x, y = at(one["figures"][1], one["figures"][place])
-        fill = COLD if one["front"] else "#fff"
-        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.5" fill="{fill}" stroke="{COLD}" stroke-width="1.5"/>')
+        parts.append(disc(*at(one["figures"][1], one["figures"][place]), COLD if one["front"] else "#fff", 4.5))
     for letter, figures in reference.items():
         x, y = at(figures[1], figures[place])
-        cross = f'<path d="M{x - 5:.1f},{y - 5:.1f}l10,10m0,-10l-10,10" stroke="{WARM}" stroke-width="2"/>'
-        parts += [cross, _text(x + 8, y + 5, clean(letter, 12), anchor="start")]
+        parts += [cross(x, y, 5), words(x + 8, y + 5, clean(letter, 12), anchor="start")]
     return "".join(parts)
-
-
-def _text(x, y, words, *, anchor="middle", turned=False):
-    turn = f' transform="rotate(-90 {x:.0f} {y:.0f})"' if turned else ""
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"{turn}>{words}</text>'
-
-
-def _span(values):
-    """The ends of an axis with some room beyond what is drawn."""
-    low, high = min(values), max(values)
-    room = 0.06 * (high - low) or 0.1 * abs(high) or 1.0
-    return low - room, high + room

@@ -1,7 +1,7 @@
 """Figures of the page of a class, written as SVG at once, as those of :mod:`hapticlab.course.cards.chart`."""
 
 from ...base.drawing import COLD, WARM
-from ...course.cards.chart import ABOVE, BELOW, GREY, HEIGHT, WIDTH, picture
+from ...course.cards.chart import ABOVE, BELOW, GREY, HEIGHT, WIDTH, picture, words
 from ...course.cards.page_text import clean
 
 
@@ -21,12 +21,12 @@ def bars(counts, label, alt):
     for k, (under, count) in enumerate(counts.items()):
         high = count / most * (HEIGHT - BELOW - ABOVE)
         x, top = 8 + k * wide, HEIGHT - BELOW - high
-        inside.append(
-            f'<rect x="{x + 0.12 * wide:.1f}" y="{top:.1f}" width="{0.76 * wide:.1f}" height="{high:.1f}" fill="{COLD}"/>'
-            f'<text x="{x + wide / 2:.1f}" y="{top - 6:.1f}" text-anchor="middle">{count}</text>'
-            f'<text x="{x + wide / 2:.1f}" y="{HEIGHT - BELOW + 18}" text-anchor="middle">{clean(under, 20)}</text>'
-        )
-    inside.append(f'<text x="{WIDTH / 2}" y="{HEIGHT - 6}" text-anchor="middle">{clean(label, 60)}</text>')
+        inside += [
+            f'<rect x="{x + 0.12 * wide:.1f}" y="{top:.1f}" width="{0.76 * wide:.1f}" height="{high:.1f}" fill="{COLD}"/>',
+            words(x + wide / 2, top - 6, count),
+            words(x + wide / 2, HEIGHT - BELOW + 18, clean(under, 20)),
+        ]
+    inside.append(words(WIDTH / 2, HEIGHT - 6, clean(label, 60)))
     return picture(WIDTH, HEIGHT, "".join(inside), alt)
 
 
@@ -53,13 +53,11 @@ def shares(rows, alt):
     parts = [part for part in FILLS if any(part in counts for counts in rows.values())]
     step = min(150, (WIDTH - 8) // len(parts))
     for k, part in enumerate(parts):
-        inside.append(
-            f'<rect x="{8 + step * k}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>'
-            f'<text x="{8 + step * k + 28}" y="16">{part}</text>'
-        )
+        inside.append(f'<rect x="{8 + step * k}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>')
+        inside.append(words(8 + step * k + 28, 16, part, anchor="start"))
     for k, (name, counts) in enumerate(rows.items()):
         y, x, whole = 30 + k * row, left, max(1, sum(counts.values()))
-        inside.append(f'<text x="{left - 10:.0f}" y="{y + 16}" text-anchor="end">{clean(name, 30)}</text>')
+        inside.append(words(left - 10, y + 16, clean(name, 30), anchor="end"))
         for part, count in counts.items():
             if count:
                 wide = count / whole * (WIDTH - left - 8)
