@@ -149,8 +149,10 @@ def _mark(axes, side, words, place):
 
 def _legend(figure, rows, handles):
     """Put the names of the curves where they cover nothing: inside where they are short, else below."""
+    if not handles:
+        return
     if len(rows) == 1 and len(handles) <= 4 and sum(map(len, handles)) <= INSIDE:
-        rows[0].legend(handles.values(), handles, fontsize="small", **FRAME) if handles else None
+        rows[0].legend(handles.values(), handles, fontsize="small", **FRAME)
     else:
         columns = 2 if max(map(len, handles)) > WIDE else 3
         figure.legend(handles.values(), handles, loc="outside lower center", ncols=columns, fontsize="small")

@@ -61,6 +61,11 @@ def test_panels_share_their_axes_and_one_legend():
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["penalty", "impulse"]
 
 
+def test_panels_of_one_curve_each_need_no_names():
+    figure = hl.plot({"A": {"": ([0, 1], [0, 1])}, "B": {"": ([0, 1], [1, 0])}}, xlabel="a", ylabel="b")
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["A", "B"] and not figure.legends
+
+
 def test_long_names_stand_below_the_axes():
     (axes,) = (figure := hl.plot({"a name of the law that is long " * 2: (K, K), "and another " * 4: (K, -K)})).axes
     assert axes.get_legend() is None and len(figure.legends) == 1
