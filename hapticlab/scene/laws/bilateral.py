@@ -31,6 +31,8 @@ BEAT = "beat"
 CUTOFF = 50.0
 #: a handle is nowhere faster than this [m/s]
 FASTEST = amount(10.0, "m/s", "fastest")
+#: what an Engagement has
+UNITS = {"hold": "s", "fade": "s", "ramp": "s", "travel": "m", "jump": "m"}
 
 _BEAT_HEARD = signal("heard", unit="1")
 
@@ -47,7 +49,7 @@ class Engagement(ShowsItself):
     ramp : float or text [s]
         The force rises within this time once the other is heard, at first and again.
     travel : float or text [m]
-        A position beyond it counts as silence, as do a velocity beyond 10 m/s and what is no number.
+        A position beyond it counts as silence, as do a velocity beyond 10 m/s and a value that is not a number.
     jump : float or text [m]
         A step of the other's position from one message to the next by more puts the force to 0, from where it rises again.
 
@@ -72,7 +74,6 @@ class Engagement(ShowsItself):
         return amount(getattr(self, name), UNITS[name], name, "a coupling", above=0)
 
 
-UNITS = {"hold": "s", "fade": "s", "ramp": "s", "travel": "m", "jump": "m"}
 ENGAGEMENT = Engagement()
 
 
@@ -93,9 +94,10 @@ def bilateral_coupling(
       where the follower heard the leader.
     * ``"wave"``: a line of wave impedance b (Anderson and Spong 1989; Niemeyer and Slotine 1991), F = b (v - r). The
       wave r [m/s] that arrives is 2 v_other - r_other, where the echo r_other is the wave that the other side used: no
-      more than velocities are needed. A delay d makes a spring b/d of it, and k (0 unless bound) adds a spring against
-      drift, which is not passive under delay. A handle reflects waves, and fast ones with a gain slightly above 1,
-      because its force is held while it moves on: a low-pass filter of the wave that arrives takes that away.
+      more than velocities are needed. A handle reflects waves, and fast ones with a gain slightly above 1, because its
+      force is held while it moves on: a low-pass filter of the wave that arrives takes that away. At rest a delay d and
+      the filter make a spring b/(d + 1/(2 pi cutoff)) of the line. k (0 unless bound) adds a spring against drift, which
+      is not passive under delay.
 
     The force has a gain from 0 to 1, which is 0 until the other is heard and falls to 0 where the other is silent: see
     :class:`Engagement`.
@@ -155,7 +157,7 @@ def bilateral_coupling(
         watch = {"heard_x": far["other_x"], "heard_v": far["other_v"]} if follows else {}
     equations, watch = [*heard_equations, *gain_equations, *filtering], {**watch, "gain": gain, "heard": _BEAT_HEARD(n)}
     if controller:
-        force, more, seen = _controlled(force)
+        force, more, seen = _controlled(force, gain)
         equations, watch = [*equations, *more], watch | seen
     name = f"{architecture} coupling" + (f", {role}" if architecture == "position-force" else "")
     return Scene(force, equations, watch=watch, name=name)
@@ -167,7 +169,7 @@ def _heard(names, engagement):
     beat = parameters(BEAT, units="1", values=0)
     given = {name: parameters(name, units="m" if name.endswith("x") else "m/s", values=0) for name in names}
     last = {name: signal(f"last_{name}", unit="m" if name.endswith("x") else "m/s") for name in names}
-    # a comparison with what is no number is false
+    # false where a value is not a number
     sane = [abs(p) <= (travel if name.endswith("x") else FASTEST) for name, p in given.items()]
     fresh = sp.And(sp.Ne(beat, _BEAT_HEARD(n - 1)), *sane)
     jumped = sp.And(fresh, abs(given["other_x"] - last["other_x"](n - 1)) > jump)
@@ -193,7 +195,7 @@ def _filtered(wave, cutoff):
     return r(n), [_is(r(n), (r(n - 1) + T * rate * wave) / (1 + T * rate))]
 
 
-def _controlled(force):
+def _controlled(force, gain):
     """The force with a damper that keeps what the link gave here within what the other handle gave to it."""
     alpha_max, other = parameters("alpha_max other_energy", units="N*s/m J", values=(None, 0))
     sent, added, alpha = signal("F_link", unit="N"), signal("F_alpha", unit="N"), signal("alpha", unit="N*s/m")
@@ -206,7 +208,7 @@ def _controlled(force):
         _is(given(n), given(n - 1) + sp.Max(-work, 0)),
         _is(spent(n), spent(n - 1) + added(n - 1) * moved),
         _is(sent(n), force),
-        _is(alpha(n), when((moved**2 > 0) & (owed > 0), sp.Min(alpha_max, owed * T / moved**2))),
+        _is(alpha(n), when((moved**2 > 0) & (owed > 0), gain * sp.Min(alpha_max, owed * T / moved**2))),
         _is(added(n), alpha(n) * moved / T),
     ]
     return sent(n) + added(n), equations, {"energy_in": taken(n), "alpha": alpha(n)}

@@ -77,6 +77,17 @@ def test_it_fades_within_the_stated_time_and_comes_back_with_the_ramp(where, sil
     assert run.right.gain[-1] == 1  # who is heard all the time is not disturbed
 
 
+def test_the_damper_of_a_controller_fades_too():
+    """It is owed what the spring gave, because the other side never said that it had put any energy in."""
+    scene = hl.laws.bilateral_coupling(controller=True)(k=60, alpha_max=5.0)
+    side = Heard(scene).pass_by(1.0, other_x=0.015)
+    side.at = 0.01
+    side.pass_by(0.05, other_x=0.015)
+    side.at = 0.0
+    side.pass_by(0.3)
+    assert side.alpha.max() > 0 and side.F[-1] == side.alpha[-1] == 0 and np.all(side.F[-190:] == 0)
+
+
 def test_it_takes_hold_again_without_a_jump_also_far_apart():
     there = Heard().pass_by(1.0, other_x=0.0).pass_by(2.0)
     assert there.F[-1] == 0

@@ -80,6 +80,16 @@ def test_it_is_the_law_written_out_with_the_delay_that_was_asked_for(architectur
     assert (run.to_right.median, run.to_right.worst) == pytest.approx((7 * T, 7 * T))
 
 
+def test_a_line_of_waves_between_handles_at_rest_is_a_spring_that_its_delay_and_its_filter_make():
+    held = [
+        paddle(hand=hl.Hand(m=0.5, b=50, k=5000, intent=lambda t, at=at: at * np.clip(t / 0.3 - 0.2, 0, 1))) for at in (0.01, 0)
+    ]
+    run = hl.devices.TwoPaddles(*held, *sides("wave", b=2.0), delay=20 * T).run(1.0)
+    around = slice(-80, None)  # two turns of the line
+    spring = run.left.F[around].mean() / (run.left.x - run.right.x)[around].mean()
+    assert spring == pytest.approx(2.0 / (20 * T + 1 / (2 * np.pi * 50)), rel=5e-3)
+
+
 def test_the_same_call_gives_the_same_run_and_another_seed_another_one():
     def run(seed):
         pair = hl.devices.TwoPaddles(paddle(), paddle(), *sides("position-position", k=50), jitter="5 ms", loss=0.1, seed=seed)
@@ -147,3 +157,15 @@ def test_it_is_set_while_it_runs_and_drawn():
     assert run.left.F[2:][[5, -5]] == pytest.approx((np.array([50, 100]) * apart[[5, -5]]), rel=1e-5)
     assert [values for _, values in run.left.changes] == [{"k": 100.0}]
     assert "the left handle moves between" in run.plot().alt
+
+
+def test_a_relay_that_fails_leaves_no_motor_on(monkeypatch):
+    side = hl.laws.bilateral_coupling()(k=50)
+    with hl.connect("sim://hapkit?pace=real") as board:
+        pair = hl.devices.TwoPaddles(paddle(), board, side)
+        pair.start()
+        pair.wait(0.05)
+        monkeypatch.setattr(pair._left, "message", lambda *_: 1 / 0)
+        pair.wait(0.1)
+        assert board.under_way is None
+        assert "the relay ended: ZeroDivisionError" in pair.stop().fault
