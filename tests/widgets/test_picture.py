@@ -145,6 +145,20 @@ def test_a_shape_follows_a_signal():
     assert view.rehearsal.h[-1] == pytest.approx(view.rehearsal.x[-1], abs=0.0021)
 
 
+def test_a_polygon_that_the_handle_meets_is_drawn_and_runs():
+    """Its closest points have no formula in symbols, so its picture has no boundary, and nothing else is missing."""
+    k = hl.parameters("k", units="N/m", values=200)
+    tip = hl.shapes.Circle("1 mm").at(x=hl.x(hl.t), name="tip")
+    plate = hl.shapes.Box("10 mm", "40 mm").at(x="15 mm", name="plate")
+    (meet,) = hl.contact.between([tip, plate], contact_law=hl.contact.penalty(k=k))
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip"))
+    for picture in (None, [tip, plate]):
+        pressing = hl.people.Rehearsal(intent=lambda t: 0.012 + 0 * t, duration=0.5)
+        view = hl.live(paddle, hl.Scene(meet.felt, name="plate"), sliders={}, picture=picture, rehearsal=pressing)
+        log = view.rehearsal
+        assert log.F[-1] == pytest.approx(200 * (log.x[-1] - 0.009), abs=1e-4) and log.F[-1] > 0.1
+
+
 def test_a_still_picture_has_words():
     data, words = moving_picture(hl.library.mass_spring_damper()).still({"x": 0.012, "z": 0.01, "F": 1.5, "intent": 0.02})
     assert data.startswith(b"\x89PNG")

@@ -164,7 +164,11 @@ class _Reader:
 
 def apart(expr):
     """Return a force without what acts in cases alone, as walls and contacts do."""
-    expr = sp.sympify(expr).doit()
+    left = _without_cases(sp.sympify(expr))  # of a distance between shapes, a case holds what is not differentiated in symbols
+    return _without_cases(left.doit())
+
+
+def _without_cases(expr):
     return expr.xreplace(dict.fromkeys(expr.atoms(sp.Piecewise, sp.Max, sp.Min), sp.S.Zero))
 
 

@@ -5,6 +5,7 @@ from operator import and_, or_
 
 import numpy as np
 
+from ...scene.shapes.closest_points import ClosestPoints
 from .plain_formulas import HANDLE, formula
 from .recording import recorded
 from .wall_boundaries import regions
@@ -17,7 +18,8 @@ def touching(scene, watched=()):
     """Return a function that says at which samples something is touched, or None where the scene has nothing to touch.
 
     Touched is what has a boundary: the handle or a body is beyond it, or between the boundaries of a patch, and the force
-    acts. A pendulum, a mass or a damper that hangs on the handle has no boundary.
+    acts. A pendulum, a mass or a damper that hangs on the handle has no boundary. Polygons whose closest points a program
+    finds are left out.
 
     Parameters
     ----------
@@ -43,7 +45,7 @@ def touching(scene, watched=()):
 
     def is_told(depth):
         names = {symbol.name for symbol in depth.free_symbols}
-        return bool(names & movers) and names <= known
+        return bool(names & movers) and names <= known and not depth.has(ClosestPoints)  # that has no formula in symbols
 
     found = [told for region in regions(scene) if (told := tuple(filter(is_told, region)))]
     if not found:
