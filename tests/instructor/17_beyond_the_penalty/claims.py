@@ -18,7 +18,11 @@ def peaks_as_sampled(lab):
 
 CLAIMS = [
     ("so this works for light bodies only", light_only, ""),
-    ("The embedded rod keeps its length to within rounding", lambda lab: lab.drift["embedded"] < 1e-7 > lab.drift["appended"], ""),
+    (
+        "The embedded rod keeps its length to within rounding",
+        lambda lab: lab.drift["embedded"] < 1e-7 > lab.drift["appended"],
+        "",
+    ),
     ("**The spring needs the fewest cycles**", lambda lab: min(lab.cycles, key=lab.cycles.get) == "spring", ""),
     ("its length changes the most", lambda lab: max(lab.drift, key=lab.drift.get) == "spring", ""),
     ("**A tenth of the safe stiffness is enough for the hand.", lambda lab: not lab.tenth.noticed, ""),
@@ -28,6 +32,10 @@ CLAIMS = [
     ("gives a force with a clear peak in its spectrum", peaks_as_sampled, ""),
     ("To be passive, the amplitude must fall with the pitch.", lambda lab: np.all(np.diff(lab.most) > 0), ""),
     ("At twice this limit the grating shakes a hand", lambda lab: lab.shaken[2.0] > 0.3, "dry friction of your"),
-    ("In this hand 50 g remain stable", lambda lab: [one.state for one in lab.lightest.values()][1:] == ["at rest", "unstable"], ""),
+    (
+        "In this hand 50 g remain stable",
+        lambda lab: [one.state for one in lab.lightest.values()][1:] == ["at rest", "unstable"],
+        "",
+    ),
     ("so the height is felt as the force", lambda lab: lab.apart < 0.02 * 0.3, ""),
 ]
