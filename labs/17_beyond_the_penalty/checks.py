@@ -3,7 +3,7 @@
 from hapticlab.course.exercise import Case, Exercise, Lab
 
 RATIO_ONCE = (
-    "You used N once. The lever multiplies the motion of m_2 by N, and its reaction on m_1 by N again, so m_1 feels N^2 times m_2."
+    "You used N once. The lever multiplies the motion of m_2 by N and its reaction on m_1 by N again. So m_1 feels N^2 times m_2."
 )
 NO_RATIO = "You added the masses as if the lever had the ratio 1. The mass m_2 moves N times as far as m_1."
 INVERSE_RATIO = "You used 1/N. The mass m_2 moves N times as far as m_1, so it counts N^2 times."
@@ -28,13 +28,13 @@ NO_SLIP_MEMORY = (
     "Your spring always starts from the first position. The proxy has moved since then, so a reversal begins at the new position."
 )
 BY_SIGN = "That is friction by the sign of the motion. The proxy sticks: after a reversal the force changes gradually."
-JUMPS = "Your proxy jumps to the handle when it slips, and the force falls to zero. It follows only until the spring pulls with F_c."
-HOLDS_THEN_JUMPS = "Your force is F_c in the sample of the slip, but then your proxy has jumped to the handle. It stays F_c/K behind."
+JUMPS = "Your proxy jumps to the handle when it slips, and the force falls to zero. It follows until the spring pulls with F_c."
+HOLDS_THEN_JUMPS = "Your force is F_c in the sample of the slip, but then your proxy jumps to the handle. It stays F_c/K behind."
 FORCE_SIGN = "The sign is wrong. The force on the environment is K (x - z), positive if the handle is ahead of the proxy."
 ALL_SPRING = "Your proxy never slips. The force may not exceed F_c."
 TRUE_FREQUENCY = "That is v/p, the frequency of the grating in the hand. Samples cannot show a frequency above 1/(2T)."
 CLIPPED = "You limited the frequency to 1/(2T). A higher frequency does not stay at this limit. It comes out as a lower one."
-MODULO = "You subtracted whole multiples of 1/T. The rest may still lie above 1/(2T): then its distance to the next multiple counts."
+MODULO = "You subtracted whole multiples of 1/T. If the rest exceeds 1/(2T), its distance to the next multiple counts."
 NYQUIST_MODULO = "You subtracted multiples of 1/(2T). The spectrum of samples repeats every 1/T."
 FOLDED_ONCE = "You folded once, at 1/T. At a higher speed, take the distance to the nearest multiple of 1/T."
 SLOPE_OF_LINE = "You took A/p as the slope. The steepest slope of A sin(2 pi x/p) is 2 pi A/p."
@@ -300,8 +300,8 @@ LAB = Lab(
                     "b",
                     slips={
                         "a": "On the arm the hand would feel 2 kg and 5 N of friction in addition to the tool of 200 g.",
-                        "c": "The paddle is light and soft: it needs no servo. The arm would be felt with all its mass and friction.",
-                        "d": "A soft spring alone has no mass, but an admittance display has a least one, and the paddle has no sensor.",
+                        "c": "The paddle is light and needs no servo. The arm would be felt with all its mass and friction.",
+                        "d": "A spring has no mass, but an admittance display needs a least one, and the paddle has no sensor.",
                     },
                 ),
             ),

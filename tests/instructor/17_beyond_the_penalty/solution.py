@@ -50,9 +50,10 @@ def hand_force(a, v, m, b, f_c, M):
 
 displays = "b"
 discussion = (
-    "The hinge of the door is a constraint, because the door turns about one point and must not drift, and it costs cycles but no "
-    "step. The membrane is a thin plate with a proxy, limited by the stiffness that my paddle keeps stable in a pinch; beyond it "
-    "I would feel chatter. The sandpaper is a fine grating as a force field, limited by its slope, so that the finest pitch that "
-    "I can feel and that stays passive is near half a millimetre at this speed; beyond it the handle buzzes. I would build all "
-    "of it as an admittance display only on a geared arm with a force sensor, and then nothing may be lighter than its least body."
+    "The hinge of the door is a constraint, because the door turns about one point and must not drift, and it costs cycles "
+    "but no step. The membrane is a thin plate with a proxy, limited by the stiffness that my paddle keeps stable in a "
+    "pinch; beyond it I would feel chatter. The sandpaper is a fine grating as a force field, limited by its slope, so that "
+    "the finest pitch that I can feel and that stays passive is near half a millimetre at this speed; beyond it the handle "
+    "buzzes. I would build all of it as an admittance display only on a geared arm with a force sensor, and then nothing "
+    "may be lighter than its least body."
 )
