@@ -15,7 +15,6 @@ from sympy.core.symbol import Str
 
 from ...base.arguments import choice
 from ...errors import SceneError
-from ..notation.cases import when
 from .closest_points import PARTS, ClosestPoints
 from .shapes import Box, Capsule, Circle, HalfPlane, Placed, Segment
 
@@ -184,7 +183,8 @@ def _from_disc(a, b):
     u, v = c * x + s * y, c * y - s * x
     if isinstance(a.shape, Box):
         u, v = sp.Abs(u) - a.shape.width / 2, sp.Abs(v) - a.shape.height / 2
-        distance = when((u > 0) & (v > 0), sp.sqrt(u**2 + v**2), _extreme(sp.Max, [u, v]))
+        # SymPy's own cases: that a corner is closest is decided beforehand where the disc stays level with the box
+        distance = sp.Piecewise((sp.sqrt(u**2 + v**2), (u > 0) & (v > 0)), (_extreme(sp.Max, [u, v]), True))
     else:
         half = a.shape.length / 2
         beyond = _extreme(sp.Max, [sp.Abs(u) - half, sp.S.Zero])

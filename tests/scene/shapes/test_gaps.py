@@ -263,6 +263,14 @@ def test_closed_forms_are_written_out():
     assert "distance" in sp.latex(gap(Box(1, l).at(name="a"), Box(r, l).at(x=A[0], name="b")))
 
 
+def test_a_disc_level_with_a_box_has_a_gap():
+    """No corner is ever the closest there, which is known before anything moves."""
+    found = gap(Circle("1 mm").at(x=A[0]), Box("10 mm", "40 mm").at(x="15 mm"))
+    places = np.array([0.0, 0.009, 0.012, 0.015, 0.025])
+    at = [values([found], {A[0]: place})[0] for place in places]
+    np.testing.assert_allclose(at, np.abs(places - 0.015) - 0.006, atol=1e-15)
+
+
 def test_sizes_may_be_parameters():
     r, l, w = hl.parameters("r l w", units="m m m", ranges=((0, 1),) * 3)
     a, b = Box(l, w).at(x=A[0], y=A[1], angle=A[2]), Capsule(w, r).at(x=B[0], y=B[1], angle=B[2])
