@@ -8,7 +8,7 @@ def light_only(lab):
 
 
 def lets_go(lab):
-    thick, thin = lab.at_penalty, lab.at_proxy
+    thick, thin = lab.through, lab.stopped
     return thick.F.min() < -0.9 * thick.F.max() < 0 and thick.x[-1] > 0.021 and thin.F.min() >= 0 and thin.z.max() < 0.01 + 1e-6
 
 
