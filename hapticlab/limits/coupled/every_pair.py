@@ -133,7 +133,7 @@ def coupling_any_hand(
         return coupled_paddles(left, right, architecture=architecture, delay=delay, k=k, b=b)
 
     low, high = 0.0, sum(known(one, "b")[0] for one in (left, right)) / known(left, "T")[0]
-    if not port(ACCURACY * high).absolutely_stable:
+    if not high or not port(ACCURACY * high).absolutely_stable:
         return Limit(0.0, None, KIND, "the smallest stiffness is unstable in some pair of hands", NOTES)
     while high - low > ACCURACY * high:
         middle = (low + high) / 2

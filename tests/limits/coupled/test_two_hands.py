@@ -96,6 +96,11 @@ def test_what_every_pair_of_hands_allows_is_what_heavy_hands_allow():
         assert every.K == pytest.approx(hl.stability.coupling_limit(heavy, heavy, delay="9 ms", b=b_c).K, rel=1e-3)
 
 
+def test_without_damping_no_stiffness_is_stable_in_every_pair():
+    bare = hl.Device(b=0.0, T=T)
+    assert hl.passivity.coupling_any_hand(bare, bare, delay="5 ms").K == 0
+
+
 @pytest.mark.always("wave")
 @pytest.mark.parametrize("architecture", ARCHITECTURES)
 def test_no_pair_of_passive_hands_is_unstable_where_it_says_so(architecture):
