@@ -118,14 +118,14 @@ class Exchange:
         This is for what may be lost and comes again at once. A board takes one frame at a time, so the next one is sent
         when this one was answered, or was lost.
         """
-        if self._told is not None and self.now() - self._last_sent < PATIENCE:
+        if self._told is not None and self.now() - self._told_at < PATIENCE:
             return False
         if not self._turn.acquire(blocking=False):
             return False
         try:
             self._require_my_time()
             sequence = self._next_sequence(message)
-            self._told = sequence & 255
+            self._told, self._told_at = sequence & 255, self.now()
             self._send(encode(message, sequence, *values, rest=rest, session=self.session))
         finally:
             self._turn.release()

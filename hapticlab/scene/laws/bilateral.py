@@ -25,7 +25,14 @@ if TYPE_CHECKING:
 ARCHITECTURES = ("position-position", "position-force", "wave")
 ROLES = ("leader", "follower")
 #: what a message sets here -> the column of the other side's samples that it comes from; beside these the beat
-HEARD = {"other_x": "x", "other_v": "v", "echo_x": "heard_x", "echo_v": "heard_v", "other_energy": "energy_in"}
+HEARD = {
+    "other_x": "x",
+    "other_v": "v",
+    "echo_x": "heard_x",
+    "echo_v": "heard_v",
+    "other_gain": "gain",
+    "other_energy": "energy_in",
+}
 BEAT = "beat"
 #: of the filter of waves [Hz]
 CUTOFF = 50.0
@@ -91,7 +98,7 @@ def bilateral_coupling(
       F = k (x - x_other) + b (v - v_other).
     * ``"position-force"``: the follower as above. The leader gets the follower's force with the other sign, computed
       here from the positions that the follower had: F = k (x_echo - x_other) + b (v_echo - v_other), where the echo is
-      where the follower heard the leader.
+      where the follower heard the leader. The follower's gain comes with it, so that both forces fade together.
     * ``"wave"``: a line of wave impedance b (Anderson and Spong 1989; Niemeyer and Slotine 1991), F = b (v - r). The
       wave r [m/s] that arrives is 2 v_other - r_other, where the echo r_other is the wave that the other side used: no
       more than velocities are needed. A handle reflects waves, and fast ones with a gain slightly above 1, because its
@@ -139,7 +146,7 @@ def bilateral_coupling(
     choice("architecture", architecture, ARCHITECTURES, error=SceneError)
     choice("role", role, ROLES, error=SceneError)
     wave, leads = architecture == "wave", architecture == "position-force" and role == "leader"
-    names = ["other_x", "other_v", *["echo_x"] * leads, *["echo_v"] * (leads or wave)]
+    names = ["other_x", "other_v", *["echo_x", "other_gain"] * leads, *["echo_v"] * (leads or wave)]
     far, heard_equations, (fresh, jumped) = _heard(names, engagement)
     gain, gain_equations = _gain(fresh, jumped, engagement)
     k, b = parameters("k b", units="N/m N*s/m", values=(0, None) if wave else (None, 0))
@@ -150,7 +157,7 @@ def bilateral_coupling(
         force, watch = b * past + gain * k * (x(n) - far["other_x"]), {"heard_v": v(n) - past}
     elif leads:
         stretch, rate = far["echo_x"] - far["other_x"], far["echo_v"] - far["other_v"]
-        force, watch = gain * (k * stretch + b * rate), {}
+        force, watch = gain * far["other_gain"] * (k * stretch + b * rate), {}
     else:
         force = gain * (k * (x(n) - far["other_x"]) + b * (v(n) - far["other_v"]))
         follows = architecture == "position-force"
@@ -167,10 +174,12 @@ def _heard(names, engagement):
     """What was heard last that can be: {parameter: signal}, equations, and whether there is news, and a jump in it."""
     travel, jump = engagement.amount_of("travel"), engagement.amount_of("jump")
     beat = parameters(BEAT, units="1", values=0)
-    given = {name: parameters(name, units="m" if name.endswith("x") else "m/s", values=0) for name in names}
-    last = {name: signal(f"last_{name}", unit="m" if name.endswith("x") else "m/s") for name in names}
+    units = {name: {"x": "m", "v": "m/s", "n": "1"}[name[-1]] for name in names}
+    most = {"m": travel, "m/s": FASTEST, "1": 1}
+    given = {name: parameters(name, units=unit, values=0) for name, unit in units.items()}
+    last = {name: signal(f"last_{name}", unit=unit) for name, unit in units.items()}
     # false where a value is not a number
-    sane = [abs(p) <= (travel if name.endswith("x") else FASTEST) for name, p in given.items()]
+    sane = [abs(p) <= most[units[name]] for name, p in given.items()]
     fresh = sp.And(sp.Ne(beat, _BEAT_HEARD(n - 1)), *sane)
     jumped = sp.And(fresh, abs(given["other_x"] - last["other_x"](n - 1)) > jump)
     equations = [_is(_BEAT_HEARD(n), when(fresh, beat, _BEAT_HEARD(n - 1)))]

@@ -77,17 +77,6 @@ def test_it_fades_within_the_stated_time_and_comes_back_with_the_ramp(where, sil
     assert run.right.gain[-1] == 1  # who is heard all the time is not disturbed
 
 
-def test_the_damper_of_a_controller_fades_too():
-    """It is owed what the spring gave, because the other side never said that it had put any energy in."""
-    scene = hl.laws.bilateral_coupling(controller=True)(k=60, alpha_max=5.0)
-    side = Heard(scene).pass_by(1.0, other_x=0.015)
-    side.at = 0.01
-    side.pass_by(0.05, other_x=0.015)
-    side.at = 0.0
-    side.pass_by(0.3)
-    assert side.alpha.max() > 0 and side.F[-1] == side.alpha[-1] == 0 and np.all(side.F[-190:] == 0)
-
-
 def test_it_takes_hold_again_without_a_jump_also_far_apart():
     there = Heard().pass_by(1.0, other_x=0.0).pass_by(2.0)
     assert there.F[-1] == 0
@@ -101,6 +90,43 @@ def test_what_cannot_be_is_silence(heard):
     side = Heard(at=0.01).pass_by(0.6, other_x=0.0).pass_by(0.2, **heard)
     assert side.gain[599] == 1 and side.gain[-1] == 0 and side.F[-1] == 0
     assert np.isfinite(side.F).all() and np.abs(side.F).max() <= 60 * 0.0101
+
+
+def test_the_damper_of_a_controller_fades_too():
+    side = Heard(hl.laws.bilateral_coupling(controller=True)(k=60, b=0.2, alpha_max=5.0), at=0.01)
+    for i in range(1200):  # the other side works on the handle, says that it was given nothing, and is silent from 0.7 s on
+        side.at = 0.01 + 0.004 * math.sin(30 * i * T)
+        side.pass_by(T, **{"other_x": 0.02 * math.sin(30 * i * T + 1.5), "other_energy": 0.0} if i < 700 else {})
+    assert side.alpha[600:700].max() > 1 and not side.F[800:].any()
+    assert np.ptp(side.x[800:]) > 5e-3  # the hand moves on
+
+
+def test_a_leader_feels_nothing_of_a_follower_that_does_not_hear(silenced):
+    leader, follower = (hl.laws.bilateral_coupling("position-force", role=role)(k=60, b=0.2) for role in ("leader", "follower"))
+    push, hold = hl.Hand("pinch", intent=lambda t: 0.02 * np.minimum(1, t)), hl.Hand("pinch")
+    left, right = (hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand) for hand in (push, hold))
+    pair = hl.devices.TwoPaddles(left, right, leader, follower)
+    pair.start()
+    pair.wait(1.0)
+    silenced.add("right")
+    pair.wait(0.2)
+    run = pair.stop()
+    assert run.left.F[999] > 0.5 and run.left.gain[-1] == 1
+    assert np.abs(run.left.F + run.right.F).max() < 0.2  # one tick late, times k, b and the speed
+    assert run.right.F[-50:].any() == run.left.F[-50:].any() == 0
+
+
+@pytest.mark.parametrize("pace", ["", pytest.param("?pace=real", marks=pytest.mark.wide)])
+def test_an_answer_that_is_lost_silences_nobody(pace):
+    left, right = hl.connect(f"sim://hapkit{pace}"), hl.connect(f"sim://hapkit{pace}")
+    with left, right:
+        pair = hl.devices.TwoPaddles(left, right, SIDE)
+        pair.start()
+        pair.wait(0.1)
+        left.exchange._told = 1000  # no answer has this number
+        pair.wait(0.2)
+        run = pair.stop()
+    assert run.left.t[-1] - run.left.t[np.flatnonzero(np.diff(run.left.heard))[-1]] < 0.02
 
 
 def test_a_jump_of_the_other_handle_lets_go_at_once_and_takes_hold_again_slowly():

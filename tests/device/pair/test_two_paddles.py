@@ -35,10 +35,6 @@ def written_out(force, delay, ticks, start, speeds):
     return x[:, :-1], F
 
 
-def past(y, n):
-    return y[n] if n >= 0 else 0.0
-
-
 def position_position(x, v, F, i, n, d):
     if n < d:
         return 0.0
@@ -48,9 +44,7 @@ def position_position(x, v, F, i, n, d):
 def position_force(x, v, F, i, n, d):
     if i == 1:
         return position_position(x, v, F, 1, n, d)
-    if n < d:
-        return 0.0
-    return 60 * (past(x[0], n - 2 * d) - x[1, n - d]) + 0.4 * (past(v[0], n - 2 * d) - v[1, n - d])
+    return -position_position(x, v, F, 1, n - d, d)  # what the follower gave, which begins when it heard the leader
 
 
 def wave(x, v, F, i, n, d):
@@ -109,7 +103,7 @@ def test_what_is_sent_to_either_side_is_never_a_force(monkeypatch):
     for architecture in ("position-position", "position-force", "wave"):
         pair = hl.devices.TwoPaddles(paddle(), paddle(), *sides(architecture, **{"k": 50, "b": 1.0}))
         pair.run(0.01)
-    assert set().union(*heard) == {"other_x", "other_v", "echo_x", "echo_v", "beat"}
+    assert set().union(*heard) == {"other_x", "other_v", "other_gain", "echo_x", "echo_v", "beat"}
 
 
 def test_two_boards_in_virtual_time_follow_each_other():
