@@ -1,4 +1,4 @@
-"""Questions on measurement and load: intervals, what a motion shows, and what a board carries."""
+"""Questions on measurement and load: intervals, what a motion shows, and the load of a board."""
 
 from .question import Concept, Question
 
@@ -61,22 +61,24 @@ CONCEPT = Concept(
             draws={"v": (50, 80, 100), "n": (500, 1000, 2000)},
         ),
         Question(
-            "rare_long_ticks",
-            about="Whether a board carries a scene with rare long ticks",
+            "load_of_a_cheaper_method",
+            about="The load of a cheaper method at a higher rate",
             asks=(
-                "The sampling period is 1 ms. On a board, {often:g} of 100 ticks take {short:g} ms each, and the others take "
-                "{long:g} ms each. Does the board carry this scene?"
+                "The method RK4 evaluates the equations of motion four times in each step, and semi-implicit Euler once. With "
+                "one step per sample these evaluations take nearly all the time of a board. At 1 kHz the load of the board is "
+                "{L:g} % with RK4. How large is it with semi-implicit Euler at {r:g} kHz?"
             ),
-            right="No: a tick that takes longer than the period makes the force late, however rare it is.",
+            right="{right:g} %",
             wrong={
-                "mean_load_suffices": "Yes: the mean load is {mean:.3g} %.",
-                "delay_free": "Yes: a force that is late by {late:.2g} ms is the same force, only a little later.",
-                "shorter_period_less_load": "Only with a shorter period, which leaves less to compute in each tick.",
+                "load_is_rate": "{rate:g} %",
+                "load_is_method": "{method:g} %",
+                "load_of_the_scene": "{L:g} %",
             },
-            draws={"often": (96, 97, 98, 99), "short": (0.5, 0.6, 0.7), "long": (1.3, 1.4, 1.6)},
+            draws={"L": (8, 12), "r": (2, 3, 8)},
             computes={
-                "mean": lambda often, short, long: often * short + (100 - often) * long,
-                "late": lambda often, short, long: long - 1,
+                "right": lambda L, r: L * r / 4,
+                "rate": lambda L, r: L * r,
+                "method": lambda L, r: L / 4,
             },
         ),
     ),

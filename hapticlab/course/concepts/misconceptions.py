@@ -226,15 +226,15 @@ MISCONCEPTIONS = {
     "limit_follows_stiffness": Misconception(
         "The step limit follows the stiffness",
         "The longest stable step is thought to be inversely proportional to the stiffness.",
-        ("07",),
+        ("07", "08"),
     ),
     "limit_is_the_methods": Misconception(
         "The step limit belongs to the method",
         "The longest stable step is thought to depend on the method and not on the scene.",
-        ("07",),
+        ("07", "08"),
     ),
     "stiffer_is_steadier": Misconception(
-        "Stiffer is steadier", "A stiffer spring is thought to be easier to integrate, because it moves less.", ("07",)
+        "Stiffer is steadier", "A stiffer spring is thought to be easier to integrate, because it moves less.", ("07", "08")
     ),
     "series_as_parallel": Misconception(
         "Springs in series as in parallel", "The stiffnesses of two springs in series are added.", ("06",)
@@ -278,13 +278,20 @@ MISCONCEPTIONS = {
     "force_shows_mass": Misconception(
         "A force shows the mass", "A force on a moving handle is thought to show its mass, even if nothing accelerates.", ("09",)
     ),
-    "mean_load_suffices": Misconception(
-        "The mean load decides",
-        "A board is thought to carry a scene if the mean time of a tick is below the period.",
+    "load_is_rate": Misconception(
+        "The rate alone is the load",
+        "The load of a board is thought to follow the sampling rate alone, whatever the method computes in each step.",
         ("07", "12"),
     ),
-    "shorter_period_less_load": Misconception(
-        "A shorter period is less work", "A shorter period is thought to leave less to compute in each tick.", ("07", "12")
+    "load_is_method": Misconception(
+        "The method alone is the load",
+        "The load of a board is thought to follow the work in one step alone, whatever the number of steps per second.",
+        ("07", "12"),
+    ),
+    "load_of_the_scene": Misconception(
+        "The load belongs to the scene",
+        "The load of a board is thought to depend on the scene alone, and neither on the method nor on the rate.",
+        ("07", "12"),
     ),
     # what a hand notices
     "threshold_constant": Misconception(

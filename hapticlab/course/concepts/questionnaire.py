@@ -18,8 +18,8 @@ INTRODUCTION = """# What do you think? {number} questions {occasion} the course
 **Time:** {minutes} minutes. **Needs:** this notebook; no paddle, no books, no calculator. Answer alone.
 
 Each question has four options, and one is right. Write the letter of your answer between quotation marks, such as
-`q01 = "b"`. If you have no idea, leave `None`: an honest gap tells your instructor more than a guess. Your answers are saved,
-not marked. They show which concepts the course must explain better{later}.
+`q01 = "b"`. If you have no idea, leave `None`: an honest gap is more useful to your instructor than a guess. Your answers are
+saved, not marked. They show which concepts the course must explain better{later}.
 
 Nothing is checked here. When you have finished, run all cells, save the notebook, and hand it in."""
 LATER = {"before": ", and after the course you will be asked again", "after": ""}

@@ -113,6 +113,7 @@ def summary(before: Sequence[Paper], after: Sequence[Paper], *, seed: int = 0) -
     >>> len(found.matched), found.whole, found.warnings[0]
     (0, None, 'No student answered on both occasions, so there is nothing to compare.')
     """
+    before, after = (sorted(papers, key=lambda paper: (paper.student.casefold(), paper.student)) for papers in (before, after))
     first, last = ({paper.student: paper for paper in papers if not paper.problem} for papers in (before, after))
     matched = [(first[student], last[student]) for student in first if student in last]
     problems = [(words, one) for words, papers in (("before", before), ("after", after)) for one in papers if one.problem]

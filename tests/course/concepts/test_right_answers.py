@@ -338,12 +338,20 @@ def test_one_speed_determines_one_sum(draws):
         assert texts[""] == "only the sum $f_c + b\\,v$"
 
 
-def test_a_rare_long_tick_is_late(draws):
-    for numbers, _, texts in asked("rare_long_ticks", draws):
-        times = np.array([numbers["short"]] * int(numbers["often"]) + [numbers["long"]] * (100 - int(numbers["often"])))
-        assert times.max() > 1 > times.mean()
-        assert float(NUMBER.search(texts["mean_load_suffices"])[0]) == near(100 * times.mean())
-        assert float(NUMBER.search(texts["delay_free"])[0]) == near(times.max() - 1)
+def test_the_load_is_what_one_step_costs_times_the_rate(draws):
+    k, m, d = hl.parameters("k m d", units="N/m kg m", values=(500, 0.05, 0.01))
+    z = hl.coordinate("z", unit="m")
+    pull = k * d * sp.sin((x(hl.t) - z) / d)
+    scene = hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(hl.t, 2), pull)])  # the force is what the first evaluation computes
+    methods = "rk4", "semi_implicit_euler"
+    steps = {name: str(hl.compile(scene, T=1e-3, method=name)).count("sin") for name in methods}
+    cheaper = steps["semi_implicit_euler"] / steps["rk4"]
+    wrong = {
+        "load_is_rate": lambda given: given["L"] * given["r"],
+        "load_is_method": lambda given: given["L"] * cheaper,
+        "load_of_the_scene": lambda given: given["L"],
+    }
+    check("load_of_a_cheaper_method", lambda given: given["L"] * cheaper * given["r"], wrong, draws)
 
 
 # ---------------------------------------------------------------- what a hand notices

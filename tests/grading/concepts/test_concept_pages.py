@@ -113,17 +113,15 @@ def test_names_of_students_are_text_and_no_cell_is_a_formula(tmp_path):
     paths = write_concept_pages(summary(before, after), after, tmp_path)
     assert all(tmp_path in path.resolve().parents for path in paths)
     assert "<script" not in paths[0].read_text("utf-8") and "&lt;script&gt;" in paths[0].read_text("utf-8")
-    assert [row["student"][0] for row in read_table(paths[1])][1] == "'"
+    assert "'=HYPERLINK(1)" in [row["student"] for row in read_table(paths[1])]
 
 
 def test_the_same_answers_give_the_same_bytes_in_any_order(tmp_path):
     before, after = klass()
-    contents = []
-    for folder, turned in (("one", 1), ("two", -1)):
-        sort = {"key": lambda one: one.student}
-        found = summary(sorted(before[::turned], **sort), sorted(after[::turned], **sort))
-        contents.append([path.read_bytes() for path in write_concept_pages(found, sorted(after, **sort), tmp_path / folder)])
-    assert contents[0] == contents[1]
+    one, other = tmp_path / "one", tmp_path / "other"
+    paths = sorted(write_concept_pages(summary(before, after), after, one))
+    others = sorted(write_concept_pages(summary(before[::-1], after[::-1]), after[::-1], other))
+    assert [path.read_bytes() for path in paths] == [path.read_bytes() for path in others]
 
 
 def test_an_empty_class_has_a_page_that_says_so(tmp_path):
