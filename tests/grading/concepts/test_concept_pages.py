@@ -100,7 +100,8 @@ def test_a_students_page_names_nobody_else_and_no_marks(tmp_path):
     ada, bob, cyd = (path.read_text("utf-8") for path in paths[3:])
     assert "bob" not in ada and "ada" not in bob and "ada" not in cyd
     last = [MISCONCEPTIONS[next(iter(question.wrong))] for _, question in questions().values()][26:]
-    now = ada.partition("Before the course, and no longer")[0]
+    now, _, overcome = ada.partition("Before the course, and no longer")
+    assert overcome and not [one.title for one in last if one.title in overcome]
     assert all(one.title in now and f"lab {one.labs[0]} (" in now for one in last)
     assert "No option that you chose" in bob and "no longer" in bob and "no longer" not in cyd
     said = re.sub("<.*?>", " ", re.sub("<style>.*?</style>", "", ada, flags=re.S))

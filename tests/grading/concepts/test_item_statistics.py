@@ -82,6 +82,13 @@ def test_an_interval_is_that_of_scipys_bootstrap():
     assert found == interval(gain, before, after, seed=2)
 
 
+def test_the_interval_of_many_students_is_the_normal_one():
+    scores = np.r_[np.ones(240), np.zeros(160)][:, None]
+    low, high = interval(lambda mean: mean, scores, seed=1)
+    assert (high - low) / 2 == pytest.approx(1.96 * np.sqrt(0.6 * 0.4 / 400), rel=0.08)
+    assert (high + low) / 2 == pytest.approx(0.6, abs=0.005)
+
+
 def test_an_interval_contains_the_truth_as_often_as_it_says():
     random, inside = np.random.default_rng(6), 0
     for k in range(60):
