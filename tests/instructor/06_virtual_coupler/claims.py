@@ -11,31 +11,7 @@ def _needed(lab):
     return max(lab.formula, lab.K_scene**2 * square / (4 * 0.02))
 
 
-def mass_felt(lab, device, display):
-    return lab.displays[device, display].mass
-
-
-def friction_felt(lab, display):
-    return max(lab.displays["heavy arm", display].friction, 0.0)
-
-
 CLAIMS = [
-    (
-        "By impedance the hand feels the device",
-        lambda lab: (
-            abs(mass_felt(lab, "your paddle", "impedance") / lab.my_paddle.m - 1) < 0.02
-            and abs(mass_felt(lab, "heavy arm", "impedance") - 2) < 0.02
-            and abs(friction_felt(lab, "impedance") - 3) < 0.1
-        ),
-        "",
-    ),
-    (
-        "the hand feels about 200 g on either device",
-        lambda lab: all(0.16 < mass_felt(lab, device, "admittance") < 0.22 for device in lab.devices),
-        "",
-    ),
-    ("its stiff servo relies on the hand", lambda lab: lab.least > 10 * 0.2, ""),
-    ("the friction of the arm almost disappears", lambda lab: friction_felt(lab, "admittance") < 0.1, ""),
     (
         "It agrees with the formula $KT/2 + b_c$ unless another need",
         lambda lab: abs(lab.tick_needs / lab.formula - 1) < 0.02,
