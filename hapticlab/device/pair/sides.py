@@ -115,7 +115,7 @@ class Side:
 class SimulatedSide(Side):
     """A simulated paddle in its own hand, which follows its own intent."""
 
-    realtime = False
+    realtime = lockstep = False
 
     def __init__(self, name, paddle, scene):
         super().__init__(name, Stepping(paddle, scene, own_hand=True))
@@ -144,7 +144,8 @@ class BoardSide(Side):
 
     def __init__(self, name, paddle, scene):
         super().__init__(name, Streaming(paddle, scene))
-        self.realtime = not paddle.exchange.lockstep
+        self.lockstep = paddle.exchange.lockstep
+        self.realtime = not self.lockstep
 
     def prepare(self, x, v):
         """Have the handle led to its stops where the board does not know its place, with the motor off."""
@@ -158,5 +159,5 @@ class BoardSide(Side):
             self.source.paddle.home()
 
     def due(self, now):
-        """Time passes there by itself; one tick is asked for in virtual time."""
+        """One look: time passes there by itself."""
         return 1

@@ -98,6 +98,10 @@ class TwoPaddles(ShowsItself):
         self._left.wants(self._right)
         self._right.wants(self._left)
         self._realtime = any(side.realtime for side in self._sides)
+        if self._realtime and any(side.lockstep for side in self._sides):
+            raise PaddleError(
+                "one board runs by the clock and the other in virtual time; give both ?pace=real, as sim://hapkit?pace=real"
+            )
         if not self._realtime and not math.isclose(left.T, right.T, rel_tol=1e-9):
             raise PaddleError(f"T = {left.T:g} s and {right.T:g} s; two paddles in virtual time need the same T")
         late = {"delay": delay, "jitter": jitter}

@@ -74,6 +74,7 @@ def test_it_is_the_law_written_out_with_the_delay_that_was_asked_for(architectur
     assert (run.to_right.median, run.to_right.worst) == pytest.approx((7 * T, 7 * T))
 
 
+@pytest.mark.wide
 def test_a_line_of_waves_between_handles_at_rest_is_a_spring_that_its_delay_and_its_filter_make():
     held = [
         paddle(hand=hl.Hand(m=0.5, b=50, k=5000, intent=lambda t, at=at: at * np.clip(t / 0.3 - 0.2, 0, 1))) for at in (0.01, 0)
@@ -120,6 +121,12 @@ def test_a_board_is_not_given_twice_and_a_scene_must_hear():
     side = hl.laws.bilateral_coupling()(k=50)
     with hl.connect("sim://hapkit") as board, pytest.raises(hl.errors.PaddleError, match="both sides"):
         hl.devices.TwoPaddles(board, board, side)
+    with (
+        hl.connect("sim://hapkit") as one,
+        hl.connect("sim://hapkit?pace=real") as other,
+        pytest.raises(hl.errors.PaddleError, match="one board runs by the clock"),
+    ):
+        hl.devices.TwoPaddles(one, other, side)
     with pytest.raises(hl.errors.PaddleError, match="does not hear another paddle"):
         hl.devices.TwoPaddles(paddle(), paddle(), hl.wall()(k=100))
     with pytest.raises(hl.errors.PaddleError, match="the other paddle, whose"):
