@@ -35,7 +35,7 @@ def test_every_wrong_option_is_a_misconception_that_labs_treat():
 
 
 def test_options_differ_for_all_numbers_and_every_place_is_filled():
-    for seed in range(150):
+    for seed in range(60):
         for one in form(seed, "ada", "after"):
             assert len({option.text for option in one.options}) == len(LETTERS), (one.question.name, one.numbers)
             assert [option.letter for option in one.options] == list(LETTERS)
@@ -76,8 +76,9 @@ def test_a_notebook_has_the_form_that_the_package_writes_and_no_key():
     assert not [one for one in formulas if one.count("$") % 2]
 
 
-def test_a_notebook_runs_and_names_what_has_no_answer(tmp_path):
-    sources = code_of(notebook_of(3, "", "after"))
+@pytest.mark.parametrize("pictures", [False, pytest.param(True, marks=pytest.mark.wide)])
+def test_a_notebook_runs_and_names_what_has_no_answer(tmp_path, pictures):
+    sources = [one for one in code_of(notebook_of(3, "", "after")) if pictures or one.count("hl.") == 0]
     _, problems, printed = run(sources, tmp_path)
     assert problems == [] and "Not answered: q01, q02, " in printed
     answered = [re.sub(r"^(q\d\d) = None", r'\1 = "b"', source) for source in sources]

@@ -13,8 +13,8 @@ import hapticlab as hl
 from hapticlab import x
 from hapticlab.course.concepts.inventory import form
 
-#: README's line tries the numbers of two seeds, .ci/run those of forty
-pytestmark = [pytest.mark.parametrize("draws", [range(2), range(40)], ids=["few", "many"]), pytest.mark.always("few")]
+#: README's line tries the numbers of one seed, .ci/run those of forty
+pytestmark = [pytest.mark.parametrize("draws", [range(1), range(40)], ids=["few", "many"]), pytest.mark.always("few")]
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 

@@ -73,12 +73,12 @@ def read_table(path):
 
 
 def test_pages_and_tables_say_that_nothing_is_validated(tmp_path):
-    before, after = klass()
+    before, after = klass(6)
     paths = write_concept_pages(summary(before, after), after, tmp_path)
     assert [path.relative_to(tmp_path).as_posix() for path in paths[:4]] == [
         "concepts.html", "students.csv", "questions.csv", "students/student00.html",
     ]  # fmt: skip
-    assert len(paths) == 3 + 24
+    assert len(paths) == 3 + 6
     for path in paths:
         text = path.read_text("utf-8")
         assert NOT_VALIDATED in text and SIMULATED not in text
@@ -87,9 +87,9 @@ def test_pages_and_tables_say_that_nothing_is_validated(tmp_path):
     assert rows[3]["student"] == "student03" and (rows[3]["all before"], rows[3]["all after"]) == ("7", "27")
     assert sum(int(rows[3][f"{concept.name} after"]) for concept in CONCEPTS) == 27
     items = read_table(paths[2])
-    assert len(items) == 28 and items[0]["right after"] == "24" and items[0]["misconception 1"] == "Force on the wrong body"
+    assert len(items) == 28 and items[0]["right after"] == "6" and items[0]["misconception 1"] == "Force on the wrong body"
     assert all(
-        sum(int(row[f"{what} after"]) for what in ("right", "wrong 1", "wrong 2", "wrong 3", "no answer")) == 24 for row in items
+        sum(int(row[f"{what} after"]) for what in ("right", "wrong 1", "wrong 2", "wrong 3", "no answer")) == 6 for row in items
     )
 
 
@@ -118,7 +118,7 @@ def test_names_of_students_are_text_and_no_cell_is_a_formula(tmp_path):
 
 
 def test_the_same_answers_give_the_same_bytes_in_any_order(tmp_path):
-    before, after = klass()
+    before, after = klass(5)
     one, other = tmp_path / "one", tmp_path / "other"
     paths = sorted(write_concept_pages(summary(before, after), after, one))
     others = sorted(write_concept_pages(summary(before[::-1], after[::-1]), after[::-1], other))
@@ -140,7 +140,7 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path):
 
 
 def test_simulated_students_say_so_on_every_page(tmp_path):
-    write_simulated_class(tmp_path, students=6, seed=2)
+    write_simulated_class(tmp_path, students=3, seed=2)
     before, after = (read_papers([tmp_path / occasion], occasion=occasion, seed=2) for occasion in ("before", "after"))
     assert not [one.problem for one in (*before, *after) if one.problem]
     found = summary(before, after)
