@@ -7,6 +7,7 @@ from pathlib import Path
 from .. import __version__
 from ..course.instructor import check_tree
 from ..course.labs import find_labs
+from ..course.marks import own_numbers
 from ..course.notebook import write
 from ..course.personal import personal_labs
 from ..errors import CourseError
@@ -174,6 +175,10 @@ def _personal(options):
     states = personal_labs(students, target, options.instructor, seed, only, labs)
     kept = sorted(path for path, state in states.items() if state == "kept")
     print(f"written: {target}, labs of {len(students)} students by {roster.columns[column]!r}, numbers of seed {seed}")
+    handed_out = [lab for lab in labs if students and (target / students[0] / lab.name).is_dir()]
+    alike = [lab.number for lab in handed_out if not own_numbers(lab.lab(), Path(options.instructor) / lab.name, seed, "")]
+    if alike:
+        print(f"the same for every student, because hidden.py defines no numbers(random): {', '.join(alike)}")
     if kept:
         print(f"left as they are, for they differ and may hold work:\n  {', '.join(kept)}")
     graded = ["--lab", _called(labs[0]) if only else "NN", "--instructor", options.instructor, "--personal", "--seed", str(seed)]

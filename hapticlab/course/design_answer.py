@@ -65,10 +65,15 @@ def words(exercise: Exercise, case: Case, answer: Any) -> str:
 
 
 def row(case: Case, answer: Any) -> dict[str, Any]:
-    """Return as plain values what an answer reaches on the scene of a case, for a report: no figures where not feasible."""
+    """Return what an answer reaches on the scene of a case, as plain values for a report.
+
+    There is neither a design nor figures where the answer is not feasible. A feasible design holds numbers and words of
+    hapticlab alone, so that nothing in it is a student's own text.
+    """
     one = found(case, answer)
     return {
         "scene": dict(case.given),
+        "design": dict(one.design) if one.feasible else {},
         "figures": list(one.figures) if one.feasible else [],
         "why": one.why,
         "points": {name: list(point) for name, point in case.expected.items()},

@@ -49,8 +49,8 @@ class ExerciseReport:
     text : str
         Of a prediction or a discussion, which are noted and carry no points: what was written.
     designs : tuple of dict
-        Of a design, for each scene: ``scene``, ``public``, ``figures`` (error [%], load [%], margin [N s/m]) or ``why`` it is
-        not feasible, the reference ``points``, and the names of those that it ``dominates``.
+        Of a design, for each scene: ``scene``, ``public``, the ``design`` and its ``figures`` (error [%], load [%], margin
+        [N s/m]) or ``why`` it is not feasible, the reference ``points``, and the names of those that it ``dominates``.
     """
 
     name: str

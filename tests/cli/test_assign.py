@@ -154,7 +154,10 @@ def test_each_student_has_a_folder_with_own_numbers(tmp_path, roster, capsys):
     assert f"al/{LAB.name}/{LAB.notebook.name}" in capsys.readouterr().out.replace("\\", "/").partition("may hold work")[2]
     assert "who_pays = 'd'" in work.read_text("utf-8")
     assert assign(tmp_path / "other", *asked, "--column", "Email") == 0
-    assert own_lines(tmp_path / "other" / "ada@x.edu") != ada
+    assert own_lines(tmp_path / "other" / "ada@x.edu") != ada and "the same for every student" not in said
+    capsys.readouterr()
+    assert assign(tmp_path / "two", *asked[:3], "--lab", "02", "12") == 0
+    assert "the same for every student, because hidden.py defines no numbers(random): 12\n" in capsys.readouterr().out
 
 
 def test_a_column_that_is_not_there_is_told(tmp_path, roster, capsys):

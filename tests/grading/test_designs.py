@@ -134,9 +134,11 @@ def test_class_page_of_designs_names_nobody_and_has_every_number(graded, tmp_pat
 
 
 def test_front_of_a_class_is_what_no_other_design_beats():
-    figures = [(1.0, 20.0, 0.5), (0.5, 30.0, 0.5), (1.0, 20.0, 0.4), (0.5, 30.0, 0.5)]
-    rows = [{"scene": {}, "figures": one, "why": "", "points": {}, "dominates": [], "public": True} for one in figures]
+    designs = {"a": (1.0, 20.0, 0.5), "b": (0.5, 30.0, 0.5), "c": (1.0, 20.0, 0.4), "b again": (0.5, 30.0, 0.5)}
+    rest = {"scene": {}, "why": "", "points": {}, "dominates": [], "public": True}
+    rows = [{**rest, "design": {"law": name.split()[0]}, "figures": figures} for name, figures in designs.items()]
     made = [ExerciseReport("design", "design", points=3.0, answered=True, designs=(row,)) for row in rows]
     (scene,) = class_fronts([Report(f"student {k}", "43", "A budget", "", exercises=(one,)) for k, one in enumerate(made)])
-    assert {one["figures"] for one in scene["answers"] if not one["front"]} == {figures[2]}
-    assert [one["number"] for one in scene["answers"]] == [1, 2, 3, 4] and scene["figure"].count("<circle") == 2 * len(figures)
+    told = {one["design"]: (one["number"], one["students"], one["front"]) for one in scene["answers"]}
+    assert told == {"law: c": (1, 1, False), "law: a": (2, 1, True), "law: b": (3, 2, True)}
+    assert scene["figure"].count("<circle") == 2 * 3 and scene["figure"].count(">3</text>") >= 2
