@@ -1,4 +1,4 @@
-"""What labs 04, 09, 10 and 14 do with a real paddle: no cell moves its motor unasked."""
+"""What labs 04, 09, 10, 14 and 17 do with a real paddle: no cell moves its motor unasked."""
 
 import builtins
 import contextlib
@@ -19,7 +19,7 @@ def cells(number):
     return code_of(read(LABS[number].notebook))
 
 
-@pytest.mark.parametrize(("number", "asks"), [("09", 4), ("10", 1), ("14", 2)])
+@pytest.mark.parametrize(("number", "asks"), [("09", 4), ("10", 1), ("14", 2), ("17", 0)])
 def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeypatch):
     asked, started = [], []
 
