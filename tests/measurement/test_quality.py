@@ -147,6 +147,9 @@ def test_a_class_leaves_out_what_is_damaged_and_says_why(tmp_path):
     (tmp_path / "notes.txt").write_text("no json", "utf-8")
     found = hl.measure.compare_qualities(tmp_path)
     assert [one.name for one in found.qualities] == ["stiffer", "softer"]
+    assert str(found).startswith("2 paddles side by side, 1 file left out\n")
+    alone = replace(found, qualities=tuple(replace(one, rendered=None) for one in found.qualities))
+    assert [len(one.plot().axes) for one in (found, alone)] == [2, 1], "no panel for what nobody measured"
     assert list(found.skipped) == ["c.json"] and "left out: c.json is not the quality" in str(found)
     page = found.page(tmp_path / "class.html").read_text("utf-8")
     assert "c.json is not the quality of a paddle" in page and page.index("stiffer") < page.index("softer")

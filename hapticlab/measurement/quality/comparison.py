@@ -41,7 +41,7 @@ class QualityComparison(Tabular):
     _hidden = ("qualities",)
 
     def _sentence(self):
-        left_out = f", {len(self.skipped)} files left out" if self.skipped else ""
+        left_out = f", {len(self.skipped)} file{'s' * (len(self.skipped) != 1)} left out" if self.skipped else ""
         return f"{len(self.qualities)} paddle{'s' * (len(self.qualities) != 1)} side by side{left_out}"
 
     def _tables(self):

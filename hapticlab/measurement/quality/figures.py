@@ -105,10 +105,12 @@ def plot_rendered(one: Rendered, b: float, fractions: tuple[float, float]) -> Fi
 
 
 def plot_class(qualities: Sequence[PaddleQuality], numbers: Sequence[int]) -> Figure:
-    """Draw each paddle in a row: its borders at the left, and up to which frequency it renders a wall as meant at the right."""
+    """Draw each paddle in a row: its borders, and where a wall was measured, up to which frequency it is as meant."""
+    same = _positive([one.rendered.same_up_to if one.rendered else math.nan for one in qualities])
+    rendered = any(one.rendered for one in qualities)
     with house_style():
         figure = new_figure(height=1.6 + 0.24 * len(qualities), width=8.6)
-        axes, upto = figure.subplots(1, 2, sharey=True, width_ratios=(5, 2))
+        axes, *beside = np.atleast_1d(figure.subplots(1, 1 + rendered, sharey=True, width_ratios=(5, 2)[: 1 + rendered]))
         rows = np.arange(len(qualities))[::-1]
         at_zero = [_at_zero(one) for one in qualities]
         columns = {
@@ -121,12 +123,12 @@ def plot_class(qualities: Sequence[PaddleQuality], numbers: Sequence[int]) -> Fi
             size = 11 if marker == "|" else 5.5
             look = {"linestyle": "", "marker": marker, "color": colour, "markersize": size, "markeredgewidth": 1.3}
             axes.plot(_positive(K), rows, **look, label=label)
-        same = _positive([one.rendered.same_up_to if one.rendered else math.nan for one in qualities])
-        upto.plot(same, rows, linestyle="", marker="s", color="black", markersize=5)
+        for upto in beside:
+            upto.plot(same, rows, linestyle="", marker="s", color="black", markersize=5)
+            upto.set(xlabel="same up to [Hz]", xlim=(0, 1.15 * np.nanmax([*same, 1.0])))
         names = [f"{number}  {plain(_cut(one.name))}" for number, one in zip(numbers, qualities, strict=True)]
         axes.set_yticks(rows, names, fontsize="small")
         axes.set(xlabel="stiffness K [N/m]", ylim=(-0.7, len(qualities) - 0.3))
-        upto.set(xlabel="same up to [Hz]", xlim=(0, 1.15 * np.nanmax([*same, 1.0])))
         plain_log(axes, "x", _ends([value for K, *_ in columns.values() for value in K]))
         figure.legend(loc="outside upper center", ncols=2, fontsize="small")
     return figure
