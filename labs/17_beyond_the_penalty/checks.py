@@ -2,20 +2,20 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-RATIO_ONCE = (
-    "You used N once. The lever multiplies the motion of m_2 by N and its reaction on m_1 by N again. So m_1 feels N^2 times m_2."
-)
+RATIO_ONCE = "You used N once. The lever multiplies the motion of m_2 by N and its reaction on m_1 by N again."
 NO_RATIO = "You added the masses as if the lever had the ratio 1. The mass m_2 moves N times as far as m_1."
-INVERSE_RATIO = "You used 1/N. The mass m_2 moves N times as far as m_1, so it counts N^2 times."
-ON_FIRST = "That is the reaction on m_1. The question is the reaction on m_2, which is smaller by the ratio N."
+INVERSE_RATIO = "You used 1/N. The mass m_2 moves N times as far as m_1, not 1/N times."
+ON_FIRST = "That is the reaction on m_1. The question is the reaction on m_2."
 SLOW_SECOND = "You multiplied m_2 by the acceleration of m_1. The mass m_2 accelerates N times as much."
 BALANCE = "That is F/N, as in a lever at rest. Here a part of F accelerates m_1 itself."
 FIRST_ALONE = "You left out m_2, but the lever moves it with m_1."
 FIRST_FIXED = "That is right if m_1 is fixed. The spring also moves m_1, which makes the stretch oscillate faster."
-SPRING_RATIO_ONCE = "You used N once. The spring pushes m_1 with N times its force, and the stretch counts its motion N times."
-SPRING_NO_RATIO = "Your masses are joined directly. The stretch is z_2 - N z_1, so N enters with its square."
-SUM = "You added the masses. Two masses on one spring oscillate faster than the lighter one alone, so add 1/m_2 and N^2/m_1."
-FELT_MASS = "You used the mass that F feels while the lever holds. For the stretch, add the inverse masses 1/m_2 and N^2/m_1."
+SPRING_RATIO_ONCE = (
+    "You used N once. The spring pushes m_1 with N times its force, and the stretch counts the motion of m_1 N times."
+)
+SPRING_NO_RATIO = "Your masses are joined directly. The spring acts on z_2 - N z_1, and pushes m_1 through the lever."
+SUM = "You added the masses. But two masses on one spring oscillate faster than the lighter one alone."
+FELT_MASS = "You used the mass that F feels while the lever holds. On a spring the two masses move against each other."
 OMEGA_ONE = "Your condition is omega T < 1. The square of the limit is 4, not 1."
 OMEGA_ROOT = "You used 2 in place of 4. The condition omega T < 2 contains the square root of k."
 THROUGH = "Your proxy enters the plate. It must stop at x_o."
@@ -34,10 +34,10 @@ FORCE_SIGN = "The sign is wrong. The force on the environment is K (x - z), posi
 ALL_SPRING = "Your proxy never slips. The force may not exceed F_c."
 TRUE_FREQUENCY = "That is v/p, the frequency of the grating in the hand. Samples cannot show a frequency above 1/(2T)."
 CLIPPED = "You limited the frequency to 1/(2T). A higher frequency does not stay at this limit. It comes out as a lower one."
-MODULO = "You subtracted whole multiples of 1/T. If the rest exceeds 1/(2T), its distance to the next multiple counts."
+MODULO = "You subtracted whole multiples of 1/T. The rest may still lie above 1/(2T)."
 NYQUIST_MODULO = "You subtracted multiples of 1/(2T). The spectrum of samples repeats every 1/T."
-FOLDED_ONCE = "You folded once, at 1/T. At a higher speed, take the distance to the nearest multiple of 1/T."
-SLOPE_OF_LINE = "You took A/p as the slope. The steepest slope of A sin(2 pi x/p) is 2 pi A/p."
+FOLDED_ONCE = "You folded once, at 1/T. At this speed another multiple of 1/T is nearer."
+SLOPE_OF_LINE = "You took A/p as the slope. A sine is steeper than that where it crosses zero."
 DOUBLE = "Your condition is b = K T/4. The passive limit is K = 2b/T."
 HALF = "Your condition is b = K T. The passive limit is K = 2b/T, with a factor of 2."
 STIFFNESS = "That is the stiffness 2b/T. The question is the amplitude of the force."
