@@ -52,7 +52,8 @@ _ETH_DRIVE = DriveTrain(
     drum=0.0043, sector=0.075, handle=0.065, torque_constant=0.0538, resistance=10.6, rotor_inertia=1.58e-6,
     source=(
         "ETH Zurich teaching paddle (github.com/WilliamLinxw/Physical-Human-Robot-Interaction-Lab, Lin_Rohner_lab3/"
-        "Matlab_Simulink_Template/Parameters.m): radii by its drawings, motor by its data sheet; encoder and supply not included"
+        "Matlab_Simulink_Template/Parameters.m): radii and rotor by its drawings, the rest by the motor's data sheet; encoder "
+        "and supply not included"
     ),
 )  # fmt: skip
 
