@@ -1,4 +1,4 @@
-"""What labs 04, 09, 10, 14 and 17 do with a real paddle: no cell moves its motor unasked."""
+"""What labs 04, 09, 10, 14, 15 and 17 do with a real paddle: no cell moves its motor unasked."""
 
 import builtins
 import contextlib
@@ -42,6 +42,25 @@ def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeyp
                     exec(cell, names)
     assert started == []
     assert len(asked) == asks, asked
+
+
+def test_lab_15_couples_two_handles_only_after_enter(monkeypatch):
+    asked, started = [], []
+
+    def nobody(question):
+        asked.append(question)
+        raise EOFError
+
+    monkeypatch.setattr(builtins, "input", nobody)
+    monkeypatch.setattr(hl.devices.TwoPaddles, "start", lambda *_, **__: started.append("motors"))
+    couples = next(cell for cell in cells("15") if "real_link" in cell)
+    partner = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
+    with hl.connect("sim://hapkit") as board:
+        exec(couples, {"hl": hl, "paddle": board, "held": partner})
+        assert asked == []
+        with pytest.raises(EOFError):
+            exec(couples.replace("= False", "= True"), {"hl": hl, "paddle": board, "held": partner})
+    assert len(asked) == 1 and started == []
 
 
 @pytest.mark.wide
