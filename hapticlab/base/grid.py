@@ -59,6 +59,18 @@ class Grid:
         for values in islice(zip(*self.columns.values(), strict=True), most):
             yield [self._cell(name, value) for name, value in zip(self.columns, values, strict=True)]
 
+    def lines(self) -> list[str]:
+        """The heads and every line as texts, in columns of equal width.
+
+        Examples
+        --------
+        >>> Grid({"law": ["zoh", "ellis"], "taps": [1, 2]}).lines()
+        ['law    taps', 'zoh    1', 'ellis  2']
+        """
+        cells = [self.heads, *self.rows()]
+        wide = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        return ["  ".join(map(str.ljust, row, wide)).rstrip() for row in cells]
+
     def _cell(self, name, value):
         factor, _ = self._scales[name]
         value = value.item() if hasattr(value, "item") and not value.shape else value

@@ -62,9 +62,7 @@ class DesignFront(Tabular):
         failed = [f"  {name}: {one}" for name, one in self.designs.items() if not one.feasible]
         front, grid = self.front, self._grid()
         words = f"{len(front)} of {len(grid)} feasible designs are on the front" if len(grid) else "no design is feasible"
-        rows = [grid.heads, *grid.rows()] if len(grid) else []
-        wide = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))] if rows else []
-        lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows]
+        lines = grid.lines() if len(grid) else []
         return "\n".join([f"{self.task.name}: {words}", *(f"  {line}" for line in lines), *failed])
 
 

@@ -59,11 +59,8 @@ class QualityComparison(Tabular):
 
     def __str__(self) -> str:
         (_, grid), *_ = self._tables()
-        cells = [grid.heads, *grid.rows()]
-        wide = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in cells]
         skipped = [f"left out: {why}" for why in self.skipped.values()]
-        return "\n".join([self._sentence(), *lines, *skipped])
+        return "\n".join([self._sentence(), *grid.lines(), *skipped])
 
     def plot(self) -> Figure:
         """Draw a row for each paddle with its borders."""
