@@ -11,8 +11,8 @@ Next: ``hl.design.compare_laws`` runs several laws on the same entries, ``hl.des
 ``hl.design.measured`` measures error, load and passivity margin of a design under a budget.
 """
 
-from .analysis.budget.front import DesignFront, front
-from .analysis.budget.measured import MeasuredDesign, measured
+from .analysis.budget.front import front
+from .analysis.budget.measured import measured
 from .analysis.budget.task import TEXTBOOK as textbook
 from .analysis.budget.task import Task
 from .analysis.budget.tasks import task
@@ -31,8 +31,6 @@ from .vocabulary import page
 
 __all__ = [
     "CompensationLimit",
-    "DesignFront",
-    "MeasuredDesign",
     "Rendering",
     "Task",
     "admittance",

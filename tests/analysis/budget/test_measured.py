@@ -9,6 +9,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab.analysis.budget import measured as module
+from hapticlab.analysis.budget.front import DesignFront
 from hapticlab.compiler.engines.engine import load
 
 PLAIN = {"T": 1e-3, "law": "zoh", "velocity": "backward"}
@@ -147,9 +148,9 @@ def test_front_is_what_no_other_design_dominates():
     """Against a search through all pairs, on figures drawn with many ties."""
     random = np.random.default_rng(5)
     figures = {f"d{k}": tuple(float(one) for one in random.integers(1, 5, 3)) for k in range(40)}
-    designs = {name: hl.design.MeasuredDesign({}, error, 0.0, load, margin) for name, (error, load, margin) in figures.items()}
-    designs["none"] = hl.design.MeasuredDesign({}, why="it does not run")
-    found = hl.design.DesignFront(hl.design.task("wall"), designs)
+    designs = {name: module.MeasuredDesign({}, error, 0.0, load, margin) for name, (error, load, margin) in figures.items()}
+    designs["none"] = module.MeasuredDesign({}, why="it does not run")
+    found = DesignFront(hl.design.task("wall"), designs)
     beaten = {
         name
         for name, (error, load, margin) in figures.items()
