@@ -159,17 +159,18 @@ class TwoPaddles(ShowsItself):
             self._turns = begin(self._relay_on(), "hapticlab pair")
 
     def wait(self, seconds: Number) -> None:
-        """Let the pair run for so long [s], or until one side stops, which stops both and is reported."""
+        """Let the pair run for so long [s], or until one side stops, which stops both and is reported.
+
+        An interrupt switches both motors off; :meth:`stop` still returns what was recorded.
+        """
         seconds = number("seconds", seconds, "s", "a wait", least=0, error=PaddleError)
         self._require_run()
-        if self._realtime:
-            self._wait_by_the_clock(seconds)
-        else:
-            T = self._left.T
-            for _ in range(round(seconds / T)):
-                if self._fault is None:
-                    self._turn()
-                    self._now = round(self._now / T + 1) * T
+        try:
+            self._wait(seconds)
+        except BaseException:
+            self._fault = "the wait was interrupted"
+            self._motors_off()
+            raise
         if self._fault is not None:
             print(f"both motors are off. {self._fault}")
 
@@ -231,6 +232,16 @@ class TwoPaddles(ShowsItself):
         finally:
             if self._running:
                 self._motors_off()
+
+    def _wait(self, seconds):
+        if self._realtime:
+            self._wait_by_the_clock(seconds)
+            return
+        T = self._left.T
+        for _ in range(round(seconds / T)):
+            if self._fault is None:
+                self._turn()
+                self._now = round(self._now / T + 1) * T
 
     def _wait_by_the_clock(self, seconds):
         until = time.monotonic() + seconds

@@ -198,6 +198,20 @@ def test_an_interrupt_stops_both(monkeypatch):
         assert left.under_way is None and right.under_way is None
 
 
+@pytest.mark.parametrize("pace", ["", "?pace=real"])
+def test_an_interrupted_wait_stops_both_and_keeps_what_was_recorded(pace, monkeypatch):
+    left, right = hl.connect(f"sim://hapkit{pace}"), hl.connect(f"sim://hapkit{pace}")
+    with left, right:
+        pair = hl.devices.TwoPaddles(left, right, SIDE)
+        pair.start()
+        pair.wait(0.1)
+        monkeypatch.setattr(pair, "_wait", lambda seconds: (_ for _ in ()).throw(KeyboardInterrupt()))
+        with pytest.raises(KeyboardInterrupt):
+            pair.wait(1.0)
+        assert left.under_way is None and right.under_way is None
+        assert len(pair.stop().left) > 50
+
+
 def test_swapped_ports_are_the_same_coupling_mirrored():
     leading = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand("pinch", intent=lambda t: 0.01 * np.sin(9 * t)))
     free = hl.SimulatedPaddle(m=0.05, b=0.3, T=T)
