@@ -67,8 +67,10 @@ def test_what_is_no_measurement_is_refused():
     assert hl.measure.quality("bench 7", paddle).profile == hl.devices.profile("hapkit")
     with pytest.raises(AnalysisError, match=r"needs what hl\.measure\.z_width"):
         hl.measure.quality("bench 7", paddle, 3)
-    with pytest.raises(AnalysisError, match="text of one line"):
+    with pytest.raises(AnalysisError, match="^name = ' '; a paddle needs a name of one line"):
         hl.measure.quality(" ", paddle)
+    with pytest.raises(AnalysisError, match="^date = 'today'; needs a day such as"):
+        hl.measure.quality("bench 7", paddle, date="today")
     with pytest.raises(PaddleError, match="profile=my_paddle"):
         hl.measure.quality("bench 7", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ...base.grid import Grid
 from ...base.shows_itself import Tabular
 from ...errors import AnalysisError
@@ -88,7 +90,7 @@ def front(
     Raises
     ------
     AnalysisError
-        For designs that are not in a dict by their names.
+        For what is no task, designs that are not in a dict by their names, and reference points without three numbers.
 
     Examples
     --------
@@ -100,4 +102,7 @@ def front(
     """
     if not isinstance(designs, Mapping):
         raise AnalysisError("designs need names; give a dict such as {'first': {'T': 0.001, ...}, 'second': {...}}")
+    for name, point in (reference_points or {}).items():
+        if np.shape(point) != (3,):
+            raise AnalysisError(f"reference point {name} = {point!r}; needs three numbers: error [%], load [%], margin [N s/m]")
     return DesignFront(task, {str(name): measured(task, one) for name, one in designs.items()}, dict(reference_points or {}))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.arguments import having
 from ...base.shows_itself import ShowsItself
 from ...compiler.boards.cost import cost
 from ...compiler.engines.engine import load
@@ -100,6 +101,11 @@ def measured(task: Task, design: Mapping[str, Any]) -> MeasuredDesign:
     MeasuredDesign
         No error is raised for a design that is not feasible: ``why`` says exactly what is wrong with it.
 
+    Raises
+    ------
+    AnalysisError
+        For what is no task.
+
     Examples
     --------
     >>> import hapticlab as hl
@@ -107,6 +113,7 @@ def measured(task: Task, design: Mapping[str, Any]) -> MeasuredDesign:
     >>> hl.design.measured(mass, {"method": "rk4", "hold": "soh", "T": 1e-3}).why[:26]
     'it does not fit the board:'
     """
+    having(task, "a task, such as hl.design.task('wall')", "takes")
     try:
         chosen = design_of(task, design)
     except NoDesign as problem:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.arguments import having
 from ...base.shows_itself import ShowsItself
 from ...base.telemetry import Telemetry, check_record
 from ...compiler.boards.cost import Cost, cost
@@ -143,7 +144,8 @@ def felt_difference(
     Raises
     ------
     AnalysisError
-        For what is no scene, a record too short for one window, or a paddle whose mass, damping or period is not known.
+        For what is no scene or no thresholds, a record too short for one window, or a paddle whose mass, damping or period
+        is not known.
 
     Examples
     --------
@@ -157,7 +159,8 @@ def felt_difference(
     for scene in (full, smaller):
         if not isinstance(scene, Scene):
             raise AnalysisError(no_scene(scene, "needs two scenes, felt_difference(full, smaller, motion, paddle)"))
-    chosen = thresholds or Thresholds()
+    chosen = Thresholds() if thresholds is None else thresholds
+    having(chosen, "thresholds, such as hl.people.Thresholds(weber=0.1)", "window")
     true, seen, T = _motion(motion, paddle, chosen)
     rows = round(chosen.window / T)
     if len(true) < rows:

@@ -19,7 +19,7 @@ from ...rendering.velocity_errors import VelocityErrors
 from ..measured import MeasuredImpedance
 from ..z_width import ZWidth
 from .record import PaddleQuality, Rendered, Velocity, Width
-from .record_file import TEXTS, loaded, refused, row_of, rows_of, text_of
+from .record_file import LETTERS, TEXTS, is_line, loaded, refused, row_of, rows_of, text_of
 
 if TYPE_CHECKING:
     from ...base.annotations import File
@@ -60,7 +60,7 @@ def paddle_quality(
     Raises
     ------
     AnalysisError
-        For something else than a measurement, and for two impedances.
+        For a name or a date that is none, something else than a measurement, and two impedances.
 
     Examples
     --------
@@ -75,7 +75,12 @@ def paddle_quality(
     >>> hl.measure.read_quality(bench.save(f"{tempfile.mkdtemp()}/bench7.json")) == bench
     True
     """
-    text_of(name, "the name of a paddle", "hl.measure.quality")
+    if not is_line(name):
+        raise AnalysisError(f"name = {name!r}; a paddle needs a name of one line with 1 to {LETTERS} letters, such as 'bench 7'")
+    try:
+        day = calendar.today() if date is None else calendar.fromisoformat(date)
+    except (TypeError, ValueError):
+        raise AnalysisError(f"date = {date!r}; needs a day such as '2026-11-20', or nothing for today") from None
     profile = profile or _profile_of(paddle)
     if isinstance(paddle, SimulatedPaddle):
         on, held = "simulated paddle", str(paddle.hand or "nobody")
@@ -92,7 +97,7 @@ def paddle_quality(
         raise AnalysisError(f"hl.measure.quality was given {len(impedances)} impedances; a page shows one. Leave the others out")
     return PaddleQuality(
         name,
-        date or calendar.today().isoformat(),
+        day.isoformat(),
         on,
         held,
         profile,

@@ -105,9 +105,14 @@ def row_of(kind: type, given: object, what: str, named: str) -> Any:
     return kind(**values)
 
 
+def is_line(given: object) -> bool:
+    """Whether a name, a day or a word is a text of one line that a page can show."""
+    return isinstance(given, str) and bool(given.strip()) and len(given) <= LETTERS and given.isprintable()
+
+
 def text_of(given: object, what: str, named: str) -> str:
     """Return a text of one line, or refuse it."""
-    if not isinstance(given, str) or not given.strip() or len(given) > LETTERS or not given.isprintable():
+    if not isinstance(given, str) or not is_line(given):
         raise refused(named, f"{what} must be a text of one line with 1 to {LETTERS} letters")
     return given
 

@@ -144,6 +144,13 @@ def test_what_is_no_task_is_told(name, constants, said):
     assert said in str(problem.value)
 
 
+def test_a_name_is_no_task_and_a_point_has_three_numbers():
+    with pytest.raises(hl.errors.AnalysisError, match=r"needs a task, such as hl\.design\.task"):
+        hl.design.measured("wall", PLAIN)
+    with pytest.raises(hl.errors.AnalysisError, match="reference point A = .* needs three numbers"):
+        hl.design.front(hl.design.task("wall"), {}, reference_points={"A": (0.3, 40.0)})
+
+
 def test_front_is_what_no_other_design_dominates():
     """Against a search through all pairs, on figures drawn with many ties."""
     random = np.random.default_rng(5)

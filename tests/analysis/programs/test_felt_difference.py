@@ -105,6 +105,8 @@ def test_what_is_lacking_is_said():
         felt_difference(GROOVES, SMOOTH, stroke(1.0)[:100], HANDLE)
     with pytest.raises(AnalysisError, match="one finite position"):
         felt_difference(GROOVES, SMOOTH, "fast", HANDLE)
+    with pytest.raises(AnalysisError, match=r"needs thresholds, such as hl\.people\.Thresholds"):
+        felt_difference(GROOVES, SMOOTH, stroke(1.0), HANDLE, thresholds=0.07)
     with pytest.raises(AnalysisError, match="weber"):
         Thresholds(weber=7)
     assert Thresholds(force="20 mN").force == 0.02
