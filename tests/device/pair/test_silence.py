@@ -166,6 +166,21 @@ def test_a_side_that_stops_stops_both_in_words(failure, capsys):
     assert len(run.right) < 0.45 / T and run.right.fault is None
 
 
+def test_a_reset_of_one_board_takes_the_force_of_the_other_and_stops_it():
+    left, right, pair = two_boards()
+    with left, right:
+        pair.start()
+        pair.wait(0.2)
+        left.exchange.port.put_on(None)
+        pair.wait(0.11)
+        assert right.state()["force"] == 0
+        pair.wait(1.0)
+        assert right.under_way is None
+        run = pair.stop()
+    assert run.fault.startswith("left: ") and "was reset" in run.fault
+    assert not run.right.F[run.right.t > 0.31].any()
+
+
 def test_a_start_that_one_side_rejects_leaves_no_motor_on():
     left, right, pair = two_boards()
     with left, right:
