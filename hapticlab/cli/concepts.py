@@ -21,6 +21,9 @@ from ..grading.pages.pages import check_folder
 from .assign import students_of
 from .labs import words_of
 
+#: students that share a reason and are named; the page names all
+MOST_NAMED = 5
+
 
 def concepts(parser, options):
     """Hand out questions, or read the answers of both occasions; 1 if answers could not be read."""
@@ -87,8 +90,12 @@ def _read(before, after, target, names, seed):
         )
     for words in (NOT_VALIDATED, *["The students are simulated."] * found.simulated, *found.warnings):
         print(words)
+    reasons = {}
     for occasion, paper in found.problems:
-        print(f"hapticlab: left out: {clean(paper.student, 80)}, {occasion}: {clean(paper.problem, 400)}", file=sys.stderr)
+        reasons.setdefault((occasion, paper.problem), []).append(clean(paper.student, 80))
+    for (occasion, problem), names in reasons.items():  # a wrong seed is one reason, not one for each student
+        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+        print(f"hapticlab: left out: {', '.join(names[:MOST_NAMED])}{more}, {occasion}: {clean(problem, 400)}", file=sys.stderr)
     return 1 if found.problems else 0
 
 

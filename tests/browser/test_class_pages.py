@@ -54,4 +54,10 @@ def test_pages_of_concepts_fit_and_axe_finds_nothing_serious(browser, tmp_path):
             page.goto(path.as_uri())
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             assert findings(page) == []
+        if width == 1280:  # what is folded on a screen is open on paper
+            page.goto(paths[0].as_uri())
+            folded = page.locator("details table tbody tr").last
+            assert not folded.is_visible()
+            page.emulate_media(media="print")
+            assert folded.is_visible()
         page.close()

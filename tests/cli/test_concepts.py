@@ -74,6 +74,15 @@ def test_what_cannot_be_read_is_named_and_the_command_fails(tmp_path, capsys):
     assert "nothing to compare" in (tmp_path / "pages" / "concepts.html").read_text("utf-8")
 
 
+def test_a_wrong_seed_is_one_reason_and_not_one_line_for_each_student(tmp_path, capsys):
+    concepts(tmp_path / "try", "--demo", "9")
+    capsys.readouterr()
+    both = ["--before", tmp_path / "try" / "before", "--after", tmp_path / "try" / "after"]
+    assert concepts(tmp_path / "pages", *both, "--seed", "5") == exits.FAILED
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2 and all(" more, " in line and "version of hapticlab" in line for line in lines)
+
+
 @pytest.mark.parametrize(
     ("asked", "words"),
     [

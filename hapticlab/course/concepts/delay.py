@@ -30,11 +30,11 @@ CONCEPT = Concept(
         ),
         Question(
             "how_far_ahead",
-            about="How far a law must look ahead if its force is late",
+            about="How far a prediction must look ahead if its force is late",
             asks=(
                 "The force of a wall is computed at each sample, reaches the motor {j:g} sampling periods later, and is then "
-                "held for one period. The handle moves at a constant speed. How far ahead must the law predict the position "
-                "so that the wall generates no energy?"
+                "held for one period. The handle moves at a constant speed. How far ahead must the program predict the "
+                "position so that the wall generates no energy?"
             ),
             right="{right:g} periods",
             wrong={
@@ -49,9 +49,9 @@ CONCEPT = Concept(
             "price_of_prediction",
             about="The price of a prediction in counts",
             asks=(
-                "A law predicts half a period ahead: $F = k\\,\\bigl(x(n) + \\tfrac12 (x(n) - x(n-1))\\bigr)$ with $k$ = {K:g} "
-                "N/m. One count of the encoder is {q:g} µm. The reading was constant for a while, and now it increases by one "
-                "count. By how much does the force change at this sample?"
+                "A program predicts the position half a period ahead: $F = k\\,\\bigl(x(n) + \\tfrac12 (x(n) - "
+                "x(n-1))\\bigr)$ with $k$ = {K:g} N/m. One count of the encoder is {q:g} µm. The reading was constant for a "
+                "while, and now it increases by one count. By how much does the force change at this sample?"
             ),
             right="{right:.4g} mN",
             wrong={

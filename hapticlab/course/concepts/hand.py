@@ -48,9 +48,10 @@ CONCEPT = Concept(
             "what_to_leave_out",
             about="Which part of a scene to leave out",
             asks=(
-                "A scene needs too many cycles. Part A takes {a_cost:g} cycles, and without it the force changes by {a:g} % "
-                "at most. Part B takes {b_cost:g} cycles, and without it the force changes by {b:g} %. A hand notices changes "
-                "of {threshold:g} % and more. Either part alone would free enough cycles. Which part do you leave out?"
+                "A simulated scene needs more cycles than the board has. Part A takes {a_cost:g} cycles, and without it the "
+                "force changes by {a:g} % at most. Part B takes {b_cost:g} cycles, and without it the force changes by {b:g} "
+                "%. A hand notices changes of {threshold:g} % and more. Either part alone would free enough cycles. Which "
+                "part do you leave out?"
             ),
             right="part A only",
             wrong={
@@ -64,10 +65,10 @@ CONCEPT = Concept(
             "several_small_changes",
             about="Several changes that are each below the threshold",
             asks=(
-                "A scene has three parts. Without any one of them, the force changes by {a:g} %. A hand notices changes of "
-                "{threshold:g} % and more. May you leave out all three parts?"
+                "A simulated scene has three small parts. If one of them is left out, whichever it is, the force changes by "
+                "{a:g} %. A hand notices changes of {threshold:g} % and more. May you leave out all three parts?"
             ),
-            right="Only if all three together remain below the threshold: together they may change the force by {sum:g} %.",
+            right="Not without a test: together they may change the force by {sum:g} %.",
             wrong={
                 "one_by_one": "Yes: each change of {a:g} % is below the threshold.",
                 "errors_cancel": "Yes: three small changes cancel each other on average.",

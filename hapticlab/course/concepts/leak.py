@@ -28,8 +28,9 @@ CONCEPT = Concept(
             about="The energy that the hold generates in one period",
             asks=(
                 "A virtual wall of {K:g} N/m is sampled, and its force is held for one period. At a sample the handle is "
-                "{d:g} mm inside the wall, and at the next sample {d_next:g} mm. By how much does the work that the handle "
-                "does in this period differ from the increase of the energy of an ideal spring? "
+                "{d:g} mm inside the wall, and at the next sample {d_next:g} mm. The handle does work against this force. By "
+                "how much does this work differ from the energy that an ideal spring of {K:g} N/m would absorb on the same "
+                "way?"
             ),
             right="It is {leak:.4g} µJ smaller.",
             wrong={
@@ -50,8 +51,8 @@ CONCEPT = Concept(
             about="The energy that a contact generates if the sampling is faster",
             asks=(
                 "A machine moves a handle into a virtual wall and out again, always along the same path at the same speeds. "
-                "The picture shows the position and the force of such a contact. With the period $T$ the wall generates {E:g} µJ "
-                "in total. How much does it generate if the period is $T/{r:g}$?"
+                "The picture shows the position and the force of such a contact. With the period $T$ the wall generates "
+                "{E:g} µJ in total. How much does it generate approximately if the period is $T/{r:g}$?"
             ),
             right="{right:.3g} µJ",
             wrong={

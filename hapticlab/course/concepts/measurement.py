@@ -28,7 +28,7 @@ CONCEPT = Concept(
             about="The value of a measured damping that a guarantee needs",
             asks=(
                 "The damping of a paddle was measured: {b:g} N s/m, with a 95 % interval from {low:g} to {high:g} N s/m. The "
-                "period is 1 ms, and nothing else is late. Which stiffness would you guarantee to be passive?"
+                "period is 1 ms, and nothing else is late. Up to which stiffness would you guarantee that a wall is passive?"
             ),
             right="{right:g} N/m",
             wrong={

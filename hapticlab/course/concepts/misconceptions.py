@@ -38,7 +38,9 @@ MISCONCEPTIONS = {
         "Units take care of themselves", "A program is thought to convert units even if it only contains numbers.", ("01",)
     ),
     "unit_inverted": Misconception(
-        "Conversion in the wrong direction", "The factor between two units is multiplied where it must divide.", ("01",)
+        "Conversion in the wrong direction",
+        "A number is divided by the factor between two units where it must be multiplied.",
+        ("01",),
     ),
     "unit_twice": Misconception(
         "Conversion made twice", "The factor between two units is applied to the stiffness and to the position.", ("01",)
@@ -110,10 +112,10 @@ MISCONCEPTIONS = {
         "A wall that is stable in a firm hand is thought to be stable in every other hand.",
         ("03", "05"),
     ),
-    "small_force_is_passive": Misconception(
-        "Small forces are passive",
-        "A wall is thought to be passive as long as its force is below the limit of the motor.",
-        ("05",),
+    "program_never_passive": Misconception(
+        "A program is never passive",
+        "A programmed wall is thought never to be passive, although a device may dissipate more than the hold generates.",
+        ("02", "05"),
     ),
     "critical_damping": Misconception(
         "Critical damping",

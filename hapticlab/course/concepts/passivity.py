@@ -11,13 +11,14 @@ CONCEPT = Concept(
             about="The damping that a sampled wall requires from the device",
             asks=(
                 "A virtual wall of {K:g} N/m is sampled every {T:g} ms, and nothing else is late. The handle has a mass of "
-                "{m:g} g. How much viscous damping must the *device* have so that no passive hand can make the wall unstable?"
+                "{m:g} g. What is the smallest viscous damping of the *device* with which no passive hand can make the wall "
+                "unstable?"
             ),
-            right="at least {right:.3g} N s/m",
+            right="{right:.3g} N s/m",
             wrong={
-                "whole_period_delay": "at least {whole:.3g} N s/m",
+                "whole_period_delay": "{whole:.3g} N s/m",
                 "spring_conserves": "none, because a spring with a positive stiffness generates no energy",
-                "critical_damping": "at least {critical:.3g} N s/m",
+                "critical_damping": "{critical:.3g} N s/m",
             },
             draws={"K": (200, 400, 600, 800), "T": (0.5, 1, 2), "m": (30, 50, 80)},
             computes={
@@ -30,11 +31,11 @@ CONCEPT = Concept(
             "stable_in_many_hands",
             about="What the experience of many hands says about passivity",
             asks="{n:g} people press a virtual wall of {K:g} N/m with a firm grip, and it never oscillates. Is the wall passive?",
-            right="That is not known: another passive hand, such as a light finger, may make it unstable.",
+            right="Not known: another passive hand, such as a light finger, may make it unstable.",
             wrong={
                 "stable_is_passive": "Yes: a wall that was stable in so many hands is passive.",
                 "firm_hand_worst": "Yes: a firm grip is the hardest case for a wall, so it is stable in every hand.",
-                "small_force_is_passive": "Yes, if its force remained below the limit of the motor.",
+                "program_never_passive": "No: a wall that a program computes is never passive, on any device.",
             },
             draws={"n": (12, 20, 30), "K": (300, 500, 700)},
         ),
@@ -42,9 +43,9 @@ CONCEPT = Concept(
             "virtual_damper_in_the_wall",
             about="A virtual damper in a wall, and the stiffest passive wall",
             asks=(
-                "The damping of a device is {b:g} N s/m, and the period is {T:g} ms. In addition to the spring, the wall "
-                "contains a virtual damper of {B:g} N s/m, whose velocity is the difference of the last two samples divided "
-                "by the period. Up to which stiffness is the wall passive?"
+                "The viscous damping of a device is {b:g} N s/m, and the period is {T:g} ms. In addition to the spring, the "
+                "wall contains a virtual damper of {B:g} N s/m, whose velocity is the difference of the last two samples "
+                "divided by the period. Up to which stiffness is the wall passive?"
             ),
             right="{right:.4g} N/m",
             wrong={

@@ -22,6 +22,25 @@ Each question has four options, and one is right. Write the letter of your answe
 saved, not marked. They show which concepts the course must explain better{later}.
 
 Nothing is checked here. When you have finished, run all cells, save the notebook, and hand it in."""
+WORDS = """## Words in the questions
+
+You need no lab for these questions. Come back to this list when a word is new.
+
+* A *paddle* is a *device* with one *handle*. A *motor* pushes the handle, and an *encoder* measures its position $x$ in small
+  equal steps, the *counts*.
+* At each *sample*, a program reads the position and computes a force. The motor *holds* this force until the next sample, one
+  *period* $T$ later. This is *the hold*. At 1 kHz, the period is 1 ms.
+* A *virtual wall* is computed by the program. Inside the wall the force grows with the depth, like the force of a spring. The
+  *stiffness* in N/m says how fast.
+* *Viscous damping* is a friction force that is proportional to the speed, $b\\,v$. *Dry friction* is the same at every speed. A
+  *virtual damper* is a force $b\\,v$ that the motor makes against the motion. If $b$ is negative, it acts with
+  the motion.
+* A *passive* hand never gives out more energy than it has received. A virtual wall is *passive* on a device if the device and
+  the wall together never do so either. A wall is *unstable* if the handle begins to oscillate at it by itself.
+* A simulation computes a motion in small *steps*. The *load* of a board is the part of its time in which it computes, and its
+  computing time is counted in *cycles*.
+* A difference is *just noticed* if the answers of a person are right in three of four trials. The *Weber fraction* is this
+  difference in per cent."""
 LATER = {"before": ", and after the course you will be asked again", "after": ""}
 LAST = """answers = [{names}]
 missing = [k for k, answer in enumerate(answers, start=1) if answer not in list("abcd")]
@@ -47,14 +66,14 @@ def notebook_of(seed: int, student: str, occasion: Occasion) -> dict[str, Any]:
     Examples
     --------
     >>> made = notebook_of(3, "ada", "before")
-    >>> made["cells"][3]["source"]
+    >>> made["cells"][4]["source"]
     'q01 = None  # "a", "b", "c" or "d"'
     """
     asked = form(seed, student, occasion)
     later = LATER[occasion]
     opening = INTRODUCTION.format(number=len(asked), occasion=occasion, minutes=MINUTES, later=later)
     first = f'import hapticlab as hl\n\n{QUESTIONS} = "{fingerprint(asked)}"  # which questions these are; leave it as it is'
-    cells = [_cell("markdown", "introduction", opening), _cell("code", "first", first)]
+    cells = [_cell("markdown", "introduction", opening), _cell("code", "first", first), _cell("markdown", "words", WORDS)]
     for one in asked:
         cells += _question_cells(one)
     cells += [_cell("markdown", "end", "## Hand in\n\nRun the last cell. It names the questions that have no answer.")]

@@ -60,7 +60,8 @@ CONCEPT = Concept(
             "too_much_compensation",
             about="Compensation of more than all of the dry friction",
             asks=(
-                "A motor compensates {p:g} % of the dry friction of a handle, so more than all of it. The handle also has "
+                "A motor pushes the handle in its direction of motion with {p:g} % of the dry friction, so it compensates more "
+                "than all of this friction. The handle also has "
                 "some viscous damping, which is not compensated. A light finger holds the handle as a soft spring. What "
                 "happens after a push?"
             ),

@@ -46,8 +46,9 @@ CONCEPT = Concept(
             "stiffer_contact",
             about="The longest stable step of a stiffer contact",
             asks=(
-                "A mass on a spring is simulated by an explicit method, which is stable up to a step of {h:g} ms. The spring "
-                "becomes {s:g} times as stiff, and nothing else changes. Up to which step is the method stable now?"
+                "A mass on a spring, without damping, is simulated by an explicit method, which is stable up to a step of "
+                "{h:g} ms. The spring becomes {s:g} times as stiff, and nothing else changes. Up to which step is the method "
+                "stable now?"
             ),
             right="{right:.3g} ms",
             wrong={

@@ -63,7 +63,9 @@ def write_concept_pages(found: Summary, after: Iterable[Paper], folder: File) ->
     addresses = {paper.student: f"students/{file_name(paper.student)}.html" for paper in readable}
     before = {one.student: one for one, _ in found.matched}
     shows = {"figure": gain_figure, "percent": percent, "number": number, "MOST_SHOWN": MOST_SHOWN}
-    facts = {"found": found, "status": status, "addresses": addresses, **shows}
+    students = len(found.matched)
+    chance = 1.96 / math.sqrt(students - 1) if students > 3 else None  # of a correlation of independent values
+    facts = {"found": found, "status": status, "addresses": addresses, "chance": chance, **shows}
     texts = {
         CLASS: templates().get_template("concepts.html").render(facts),
         STUDENTS: table(["student", *_columns(), "status"], _student_rows(found, " ".join(status))),

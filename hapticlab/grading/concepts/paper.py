@@ -122,7 +122,7 @@ def _asked(found: str, student: str, seed: int, occasion: Occasion) -> tuple[Ask
     for other in OCCASIONS:
         if other != occasion and found in {fingerprint(form(seed, name, other)) for name in (student, "")}:
             raise CourseError(f"it has the questions of {other} the course, and was handed in as {occasion} the course")
-    again = "give the seed and the roster with which it was handed out"
+    again = "give the seed and the roster, and use the version of hapticlab, with which it was handed out"
     raise CourseError(f"it has the questions of a different student, of a different seed or of a different version; {again}")
 
 

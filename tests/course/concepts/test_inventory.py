@@ -42,6 +42,46 @@ def test_options_differ_for_all_numbers_and_every_place_is_filled():
             assert not re.search(r"nan|inf|\{|e[-+]\d", " ".join([one.text, *(option.text for option in one.options)]))
 
 
+def test_the_right_option_is_not_known_by_its_length():
+    """Of the questions with options in words; by chance it would be the longest in a quarter of them."""
+    lengths = []
+    for _, question in questions().values():
+        texts = [text.format(**question.numbers("any")) for text in (question.right, *question.wrong.values())]
+        if max(map(len, texts)) > 25:
+            lengths.append([len(text) for text in texts])
+    longest = sum(one[0] > max(one[1:]) for one in lengths)
+    assert len(lengths) >= 12 and longest <= len(lengths) / 3
+
+
+def test_a_smaller_number_is_never_right_as_well():
+    """What holds up to a stiffness also holds below it, so the question asks for the limit."""
+    asks = {question.name: question.asks for _, question in questions().values()}
+    for name in ("value_for_a_guarantee", "virtual_damper_in_the_wall", "compensation_everywhere"):
+        assert "Up to which stiffness" in asks[name]
+    assert "smallest viscous damping" in asks["damping_required"]
+
+
+def test_words_of_the_course_are_explained_before_the_first_question():
+    """The questions are also given before any lab."""
+    cells = notebook_of(3, "ada", "before")["cells"]
+    places = [cell["id"] for cell in cells]
+    assert places.index("words") < places.index("q01-asks")
+    words = cells[places.index("words")]["source"]
+    asked = " ".join(cell["source"] for cell in cells[places.index("words") + 1 :])
+    for word in (
+        "virtual wall",
+        "passive",
+        "sample",
+        "hold",
+        "virtual damper",
+        "count",
+        "Weber fraction",
+        "dry friction",
+        "load",
+    ):
+        assert word.lower() in asked.lower() and re.search(rf"\*{word}s?\*", words, re.I), word
+
+
 def test_all_numbers_that_are_drawn_are_used():
     for _, question in questions().values():
         texts = [question.asks, question.right, *question.wrong.values()]
@@ -56,7 +96,7 @@ def test_numbers_and_order_are_each_students_own_and_stay():
     forms = {(student, occasion): form(3, student, occasion) for student in ("ada", "bob", "") for occasion in OCCASIONS}
     assert len({fingerprint(one) for one in forms.values()}) == len(forms)
     assert forms["ada", "before"] != form(4, "ada", "before")
-    assert fingerprint(forms["ada", "before"]) == "66888f995f37"  # a release that changes it no longer reads what is handed out
+    assert fingerprint(forms["ada", "before"]) == "a38b2558bcf4"  # a release that changes it no longer reads what is handed out
     places = Counter(one.key for seed in range(60) for one in form(seed, "ada", "before"))
     expected = sum(places.values()) / len(LETTERS)
     assert all(abs(count - expected) < 4 * expected**0.5 for count in places.values())

@@ -93,6 +93,16 @@ def test_pages_and_tables_say_that_nothing_is_validated(tmp_path):
     )
 
 
+def test_the_page_says_how_far_its_numbers_carry(tmp_path):
+    write_concept_pages(summary(*klass(26)), [], tmp_path)
+    text = " ".join((tmp_path / "concepts.html").read_text("utf-8").split())
+    assert "A negative gain means that fewer answers were right" in text
+    independent = np.random.default_rng(1).standard_normal((2, 4000, 26))
+    correlations = [np.corrcoef(one, other)[0, 1] for one, other in zip(*independent, strict=True)]
+    stated = float(re.search(r"chance alone changes a discrimination by up to about (\d\.\d+)", text)[1])
+    assert stated == pytest.approx(np.quantile(np.abs(correlations), 0.95), abs=0.02)
+
+
 def test_a_students_page_names_nobody_else_and_no_marks(tmp_path):
     before = [paper("ada", 3), paper("bob", 3)]
     after = [paper("ada", 26), paper("bob", 28), paper("cyd", 27)]
