@@ -20,10 +20,14 @@ RETURNS = "Your load goes back to 0 by itself. It stays where it was, so h(n-1) 
 WHOLE_GAP = "You used the whole play on each side. In its middle the tooth has g/2 to either side."
 NO_PLAY = "The load does not move over the whole stroke: the play and the spring of the flanks take a part of it."
 NO_WIND_UP = "You left out the compression of the flanks. It changes from -F_c/k to F_c/k before the load moves."
+ONE_WIND_UP = (
+    "You took F_c/k once. After a reversal the force goes from F_c to 0 and then to -F_c, so the tooth moves twice as far."
+)
 STUCK = "For a small stroke the load does not move and nothing is lost. The result cannot be negative."
 ONE_WAY = "That is one direction. A cycle goes there and back."
 HEATING = "That is the time of heating. Add the time of cooling."
 COOLING = "That is the time of cooling. Add the time of heating."
+FROM_ROOM = "You heated from the temperature of the room. In the cycle, heating begins at the lower threshold."
 LOG_TEN = "Use the natural logarithm: an exponential solves the equation of first order."
 SYMMETRIC = "You took heating to last as long as cooling. Heating goes towards hot and not away from 0."
 LINEAR = "You took the rates as constant. They change within the band, so solve the exponential for the time."
@@ -149,13 +153,13 @@ LAB = Lab(
                     {"F_c": 0.2, "k": 200.0, "g": 0.004, "X": 0.01},
                     0.0056,
                     unit="J",
-                    slips={0.008: NO_PLAY, 0.0064: NO_WIND_UP, 0.0028: ONE_WAY},
+                    slips={0.008: NO_PLAY, 0.0064: NO_WIND_UP, 0.006: ONE_WIND_UP, 0.0028: ONE_WAY},
                 ),
                 Case(
                     {"F_c": 0.3, "k": 100.0, "g": 0.004, "X": 0.004},
                     0.0,
                     unit="J",
-                    slips={0.0048: NO_PLAY, 0.0024: NO_WIND_UP, -0.0012: STUCK},
+                    slips={0.0048: NO_PLAY, 0.0024: NO_WIND_UP, 0.0006: ONE_WIND_UP, -0.0012: STUCK},
                 ),
             ),
             hint="How far does the load move in each direction? Which force does friction need there?",
@@ -173,6 +177,7 @@ LAB = Lab(
                     unit="s",
                     slips={
                         0.0333456872: HEATING,
+                        0.322405317: FROM_ROOM,
                         0.0500417293: COOLING,
                         0.0362146949: LOG_TEN,
                         0.100083459: SYMMETRIC,
@@ -185,6 +190,7 @@ LAB = Lab(
                     unit="s",
                     slips={
                         1.38629436: HEATING,
+                        3.58351894: FROM_ROOM,
                         0.810930216: COOLING,
                         0.954242509: LOG_TEN,
                         1.62186043: SYMMETRIC,
