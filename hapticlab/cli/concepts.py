@@ -11,7 +11,7 @@ from ..course.notebook import text_of, write_new
 from ..course.personal import folder_name
 from ..errors import CourseError
 from ..grading.concepts.class_summary import summary
-from ..grading.concepts.pages import CLASS, write_concept_pages
+from ..grading.concepts.pages import CLASS, number, write_concept_pages
 from ..grading.concepts.paper import read_papers
 from ..grading.concepts.simulated_students import write_simulated_class
 from ..grading.formats.words import clean
@@ -84,7 +84,7 @@ def _read(before, after, target, names, seed):
     whole = found.whole
     if whole:
         low, high = whole.interval
-        gained = f"normalised gain {whole.gain:.2f} (95 %: {low:.2f} to {high:.2f})"
+        gained = f"normalised gain {number(whole.gain)} (95 %: {number(low)} to {number(high)})"
         print(
             f"{len(found.matched)} students on both occasions: {whole.before:.0%} right before, {whole.after:.0%} after, {gained}"
         )

@@ -59,7 +59,8 @@ def test_without_a_roster_all_share_one_notebook(tmp_path, capsys):
 
 def test_a_simulated_class(tmp_path, capsys):
     assert concepts(tmp_path / "try", "--demo", "3") == 0
-    assert "The students are simulated." in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "The students are simulated." in said and "(95 %: – to –)" in said and "nan" not in said
     assert (tmp_path / "try" / "pages" / "concepts.html").is_file()
     assert concepts(tmp_path / "try", "--demo", "3") == exits.FAILED
     assert "is not empty" in capsys.readouterr().err

@@ -29,8 +29,8 @@ CONCEPT = Concept(
             asks=(
                 "A virtual wall of {K:g} N/m is sampled, and its force is held for one period. At a sample the handle is "
                 "{d:g} mm inside the wall, and at the next sample {d_next:g} mm. The handle does work against this force. By "
-                "how much does this work differ from the energy that an ideal spring of {K:g} N/m would absorb on the same "
-                "way?"
+                "how much does this work differ from the energy that an ideal spring of {K:g} N/m would absorb in the same "
+                "motion?"
             ),
             right="It is {leak:.4g} µJ smaller.",
             wrong={

@@ -152,7 +152,7 @@ MISCONCEPTIONS = {
     "delay_free": Misconception(
         "A delay costs nothing",
         "A late force is thought to be the same force a little later, without an influence on energy.",
-        ("03", "11"),
+        ("03", "11", "15"),
     ),
     "hold_free": Misconception(
         "The hold is forgotten",
@@ -228,7 +228,7 @@ MISCONCEPTIONS = {
     "limit_follows_stiffness": Misconception(
         "The step limit follows the stiffness",
         "The longest stable step is thought to be inversely proportional to the stiffness.",
-        ("07", "08"),
+        ("07", "08", "17"),
     ),
     "limit_is_the_methods": Misconception(
         "The step limit belongs to the method",
@@ -239,7 +239,7 @@ MISCONCEPTIONS = {
         "Stiffer is steadier", "A stiffer spring is thought to be easier to integrate, because it moves less.", ("07", "08")
     ),
     "series_as_parallel": Misconception(
-        "Springs in series as in parallel", "The stiffnesses of two springs in series are added.", ("06",)
+        "Springs in series as in parallel", "The stiffnesses of two springs in series are added.", ("06", "15")
     ),
     "coupler_invisible": Misconception(
         "The coupler is not felt", "A hand is thought to feel the virtual wall itself, and not the coupler before it.", ("06",)

@@ -33,8 +33,7 @@ You need no lab for these questions. Come back to this list when a word is new.
 * A *virtual wall* is computed by the program. Inside the wall the force grows with the depth, like the force of a spring. The
   *stiffness* in N/m says how fast.
 * *Viscous damping* is a friction force that is proportional to the speed, $b\\,v$. *Dry friction* is the same at every speed. A
-  *virtual damper* is a force $b\\,v$ that the motor makes against the motion. If $b$ is negative, it acts with
-  the motion.
+  *virtual damper* is a force $b\\,v$ of the motor against the motion. If $b$ is negative, the force acts with the motion.
 * A *passive* hand never gives out more energy than it has received. A virtual wall is *passive* on a device if the device and
   the wall together never do so either. A wall is *unstable* if the handle begins to oscillate at it by itself.
 * A simulation computes a motion in small *steps*. The *load* of a board is the part of its time in which it computes, and its

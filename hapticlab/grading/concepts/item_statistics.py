@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 DIFFICULTY, DISCRIMINATION, RELIABILITY = (0.3, 0.9), 0.2, 0.7
 #: classes drawn again for an interval, and the part of them inside it
 RESAMPLED, INSIDE = 2000, 0.95
+#: students below which classes drawn again are too much alike: the interval would be far too narrow
+LEAST = 10
 
 
 def gain(before: Array | float, after: Array | float) -> Array:
@@ -70,16 +72,16 @@ def interval(function: Callable[..., Array], *scores: Array, seed: int = 0) -> t
     Returns
     -------
     low, high : float
-        NaN for fewer than two students, and where most of the classes drawn have no such number.
+        NaN for fewer than ten students, and where most of the classes drawn have no such number.
 
     Examples
     --------
-    >>> low, high = interval(lambda mean: mean, np.array([[1], [0], [1], [1]]))
+    >>> low, high = interval(lambda mean: mean, np.array([[1], [0], [1], [1]] * 5))
     >>> low <= 0.75 <= high
     True
     """
     students = len(scores[0])
-    if students < 2:
+    if students < LEAST:
         return float("nan"), float("nan")
     rows = np.random.default_rng(seed).integers(students, size=(RESAMPLED, students))
     drawn = function(*(array.mean(axis=1)[rows].mean(axis=1) for array in scores))

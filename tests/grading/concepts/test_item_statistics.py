@@ -99,4 +99,7 @@ def test_an_interval_contains_the_truth_as_often_as_it_says():
 
 def test_few_students_have_no_interval():
     assert np.isnan(interval(gain, np.zeros((1, 3)), np.ones((1, 3)))).all()
-    assert np.isnan(interval(gain, np.ones((4, 3)), np.ones((4, 3)))).all()
+    two_alike = np.array([[1, 0, 0], [0, 1, 0]])  # whose classes drawn again all have the mean 1/3: an interval of no width
+    assert np.isnan(interval(lambda mean: mean, two_alike)).all()
+    assert np.isfinite(interval(lambda mean: mean, random_scores(4)[:10])).all()
+    assert np.isnan(interval(gain, np.ones((12, 3)), np.ones((12, 3)))).all()
