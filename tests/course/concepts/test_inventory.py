@@ -10,7 +10,7 @@ import pytest
 from hapticlab.course.concepts.inventory import CONCEPTS, OCCASIONS, form, questions
 from hapticlab.course.concepts.misconceptions import MISCONCEPTIONS
 from hapticlab.course.concepts.question import LETTERS, Question, fingerprint
-from hapticlab.course.concepts.questionnaire import MINUTES, notebook_of
+from hapticlab.course.concepts.questionnaire import MINUTES, WORDS, notebook_of
 from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import code_of, run, text_of
 from hapticlab.errors import CourseError
@@ -129,6 +129,7 @@ def test_a_notebook_runs_and_names_what_has_no_answer(tmp_path, pictures):
 def test_the_stated_time_is_that_of_reading_and_half_a_minute_of_thought():
     asked = form(3, "ada", "before")
     words = sum(len(text.split()) for one in asked for text in (one.text, *(option.text for option in one.options)))
+    words += len(WORDS.split())
     assert 20 <= words / 200 + 0.5 * len(asked) <= MINUTES
 
 
