@@ -170,6 +170,7 @@ class TwoPaddles(ShowsItself):
         except BaseException:
             self._fault = "the wait was interrupted"
             self._motors_off()
+            self._end_relay()
             raise
         if self._fault is not None:
             print(f"both motors are off. {self._fault}")
@@ -195,7 +196,12 @@ class TwoPaddles(ShowsItself):
 
     def _halt(self):
         """End the relay, and switch both motors off."""
-        self._running, turns, self._turns = False, self._turns, None
+        self._running = False
+        self._end_relay()
+
+    def _end_relay(self):
+        """Wait for its last turn, which may still begin a side that was waiting, and switch both motors off."""
+        turns, self._turns = self._turns, None
         try:
             if turns is not None:
                 turns.join(2)
@@ -217,7 +223,7 @@ class TwoPaddles(ShowsItself):
             rows = side.advance(ticks, self._clock) if ticks else None
             if rows is not None:
                 relay.send(side.message(rows, other), self._clock())
-        self._fault = "; ".join(f"{side.name}: {side.off}" for side in self._sides if side.off) or None
+        self._fault = self._fault or "; ".join(f"{side.name}: {side.off}" for side in self._sides if side.off) or None
         if self._fault:
             self._motors_off()
 

@@ -224,7 +224,9 @@ def test_an_interrupted_wait_stops_both_and_keeps_what_was_recorded(pace, monkey
         with pytest.raises(KeyboardInterrupt):
             pair.wait(1.0)
         assert left.under_way is None and right.under_way is None
-        assert len(pair.stop().left) > 50
+        pair._turn()  # one that was under way does not take the reason back, nor start anything
+        run = pair.stop()
+        assert left.under_way is None and len(run.left) > 50 and run.fault == "the wait was interrupted"
 
 
 def test_swapped_ports_are_the_same_coupling_mirrored():
