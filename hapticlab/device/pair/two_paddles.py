@@ -109,7 +109,8 @@ class TwoPaddles(ShowsItself):
         self._loss, self._seed = number("loss", loss, "", "a link", least=0, most=1, error=PaddleError), seed
         tick = 0.0 if self._realtime else left.T
         self.delay = max(tick, round(delay / tick) * tick) if tick else delay
-        self.jitter, self._turns, self._running, self._fault = jitter, None, False, None
+        self.jitter, self._turns, self._running = jitter, None, False
+        self._fault: str | None = None
 
     def run(self, duration: Number, *, x: Pair = (0.0, 0.0), v: Pair = (0.0, 0.0)) -> CoupledRun:
         """Couple the paddles for a duration and return what both recorded; the motors are off before and after.

@@ -100,7 +100,7 @@ def test_what_is_released_is_the_students_notebook(course, number):
     came, given = read(lab.notebook), released(course, lab)
     assert [text(cell).rstrip("\n") for cell in given["cells"]] == [text(cell).rstrip("\n") for cell in came["cells"]]
     assert (course / "release" / lab.name / "checks.py").read_bytes() == (lab.path / "checks.py").read_bytes()
-    _, problems = notebooks.run(code_of(given), lab.path)
+    _, problems, _ = notebooks.run(code_of(given), lab.path)
     assert problems == []
 
 

@@ -83,7 +83,8 @@ def test_students_get_the_lab_with_otters_checks_and_no_solution(made, number):
     solved = {text(cell).rstrip() for cell in answered} - set(came)
     assert len(solved) > len(names) and not [answer for answer in solved for source in given if answer in source]
     assert (made / lab.name / "student" / "checks.py").read_bytes() == (lab.path / "checks.py").read_bytes()
-    _, problems = notebooks.run([source for source in code_of(students_notebook(made, lab)) if "grader" not in source], lab.path)
+    given = [source for source in code_of(students_notebook(made, lab)) if "grader" not in source]
+    _, problems, _ = notebooks.run(given, lab.path)
     assert problems == []
 
 
