@@ -55,6 +55,7 @@ def read_profile(path):
 
 
 def as_text(profile):
+    """Return the text of the file that holds a profile, JSON with a unit in each name."""
     estimates = {one.name: one for one in profile.estimates}
     constants = {}
     for name in CONSTANTS:
