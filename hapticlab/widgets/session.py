@@ -101,7 +101,7 @@ class Session:
 
     def intend(self, x):
         """Say where the hand means to be [m]; the next frame comes at once."""
-        self._wanted = float(x)
+        self._said.append(("intend", float(x)))  # in its order: a press of "restart" before it also puts the hand somewhere
         self._wake()
 
     def hold(self, held):
@@ -258,9 +258,9 @@ class Session:
             self._silent = None
         self.stage.guarded(self.stage.wake)
         self.stage.obey([self._said.popleft() for _ in range(len(self._said))])
-        self._follow_caught()
+        self._follow_hand()
         rows = self.stage.advance(self._wanted)
-        self._follow_caught()
+        self._follow_hand()
         return self.stage.frame(rows, self._wanted)
 
     def _tell_of_a_cell(self):
@@ -276,10 +276,10 @@ class Session:
         elif not awaits and self.stage.note == A_CELL_RUNS:
             self.stage.tell("")
 
-    def _follow_caught(self):
-        """Let the hand begin where the stage has put it."""
-        if self.stage.caught is not None:
-            self._wanted, self.stage.caught = self.stage.caught, None
+    def _follow_hand(self):
+        """Let the hand go on to where it was led, or where the stage has put it."""
+        if self.stage.hand_at is not None:
+            self._wanted, self.stage.hand_at = self.stage.hand_at, None
 
     def _somebody_looks(self):
         """Forget views that are silent; return whether any is left."""

@@ -60,7 +60,7 @@ class Stage:
         self.touches, self.clock = touched is not None, clock
         self.awake, self._wants_to_run, self._goes_on = False, self.source.kind == "simulated", False
         self.stopped = "time stood still" if self._wants_to_run else "the motor went off"
-        self.caught, self.quiet, self._motor, self._off_since = None, QUIET, False, -math.inf
+        self.hand_at, self.quiet, self._motor, self._off_since = None, QUIET, False, -math.inf
         self._note, self._note_until, self._lost, self._vibration = "", -1.0, "", ""
         self._status, self._next_look, self._next_frame = "", -1.0, -1.0
 
@@ -106,6 +106,9 @@ class Stage:
         """Do what was said, in its order, as (what, given); of a slider's moves in a row the last counts."""
         moves = {}
         for what, given in said:
+            if what == "intend":
+                self.hand_at = given
+                continue
             self.look()
             if what == "move":
                 moves[given[0]] = given[1]
@@ -144,7 +147,7 @@ class Stage:
     def advance(self, wanted):
         """Go on to the clock, with a hand that means to be at a place [m]; return a frame's rows, or None.
 
-        Where a handle that was let go leaves the picture, ``caught`` is where the hand now holds it [m].
+        Where a handle that was let go leaves the picture, ``hand_at`` is where the hand now holds it [m].
         """
         running, recording = self.motion.running, self.motion.recording
         rows = self.guarded(self.motion.advance, wanted)
@@ -155,7 +158,7 @@ class Stage:
         low, high = self.picture.reach
         if not (self.motion.held or self.motion.replaying) and not low - PAST <= self.motion.place <= high + PAST:
             self.motion.hold(True)
-            self.caught = min(max(self.motion.place, low), high)
+            self.hand_at = min(max(self.motion.place, low), high)
             self.tell("The handle that was let go came to the end of its way: the hand holds it there")
         if rows is not None:
             self._look_for_it()
@@ -199,7 +202,7 @@ class Stage:
         self.motion.start()
         if self._wants_to_run:  # a simulated hand begins where the handle does
             self.motion.hold(True)
-            self.caught = self.source.place
+            self.hand_at = self.source.place
 
     def restart(self):
         """Begin again at the first state of the scene; a board's motor that is off stays off."""

@@ -86,6 +86,32 @@ def test_a_handle_let_go_that_leaves_is_caught_and_taken_where_it_is():
     assert stage.rows[-1, 1] == pytest.approx(-0.05, abs=1e-4)  # it rests there: the hand's spring, and no wall
 
 
+def test_where_a_hand_is_led_after_a_restart_counts_also_within_one_turn():
+    stage = Stage().open()
+    stage.session.intend(0.004)
+    stage.session.press("restart")  # puts the hand at 0
+    stage.session.intend(0.005)
+    stage.go(0.1)
+    assert stage.flags["wanted"] == 0.005
+
+
+def test_where_a_hand_is_led_while_a_turn_catches_the_handle_counts(monkeypatch):
+    stage = Stage(scene=hl.wall()(k=300, x_o=0.001)).open()
+    stage.go(0.5, pointer=lambda now: 0.03)
+    caught = stage.session.stage.advance
+
+    def advance(wanted):
+        held, rows = stage.session.motion.held, caught(wanted)
+        if stage.session.motion.held and not held:
+            stage.session.intend(0.002)  # as a page does, from another thread
+        return rows
+
+    monkeypatch.setattr(stage.session.stage, "advance", advance)
+    stage.session.hold(False)
+    stage.go(1.0)
+    assert stage.flags["held"] and stage.flags["wanted"] == 0.002
+
+
 def test_slow_motion_is_slow():
     stage = Stage(speed=0.1).open()
     stage.go(1.0)

@@ -94,9 +94,9 @@ def in_python(paddle, scene, script):
         if not seen:
             continue
         stage.obey(queue)
-        wanted, stage.caught = (wanted if stage.caught is None else stage.caught), None
+        wanted, stage.hand_at = (wanted if stage.hand_at is None else stage.hand_at), None
         rows = stage.advance(wanted)
-        wanted, stage.caught = (wanted if stage.caught is None else stage.caught), None
+        wanted, stage.hand_at = (wanted if stage.hand_at is None else stage.hand_at), None
         frame = stage.frame(rows, wanted)
         if frame is not None:
             frames.append(frame)
