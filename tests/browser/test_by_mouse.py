@@ -73,7 +73,8 @@ def test_a_blind_trial_takes_two_presses_and_shows_neither_number_nor_pointer(la
         for k in range(30):
             page.mouse.move(x + 2 * k, y)
         eventually(page, f"print(blind._session.motion.place > 0.003 and blind._felt == set(range({which + 1})))", "True")
-        page.wait_for_timeout(300)
+        begun = ask(page, "print(blind._session.motion.time)")
+        eventually(page, f"print(blind._session.motion.time > {begun} + 0.3)", "True")  # until it stands
         felt.append(float(ask(page, "print(blind._session.motion.place)")))
         if which == 0:
             picture(page, "by-mouse-blind")

@@ -167,6 +167,8 @@ def test_pause_record_replay_and_save_by_keyboard(page):
     page.keyboard.press("r")
     until(page, STATUS, "Recording")
     picture(page, "live-2-recording")
+    begun = ask(page, "print(view._session.motion.time)")
+    eventually(page, f"print(view._session.motion.time > {begun} + 1)", "True")  # so that its replay is seen
     page.keyboard.press("r")
     until(page, ".hl-record", "● Record")
     assert ask(page, "print(view.log is not None)") == "True"
@@ -180,10 +182,10 @@ def test_pause_record_replay_and_save_by_keyboard(page):
 def test_it_starts_again_and_slows_down_and_zooms_by_keyboard(page):
     page.locator(STAGE).focus()
     eventually(page, "print(view._session.motion.time > 1)", "True")
-    page.keyboard.press("a")
-    eventually(page, "print(view._session.motion.time < 1)", "True")
-    until(page, STATUS, "Running")
     page.keyboard.press("m")
+    until(page, STATUS, "Running at 0.1 times real time")
+    page.keyboard.press("a")
+    eventually(page, "print(view._session.motion.time < 1)", "True")  # for 10 s
     until(page, STATUS, "Running at 0.1 times real time")
     page.keyboard.press("z")
     assert page.evaluate("() => ['slow', 'zoom', 'sound'].map((name) => document.querySelector('.hl-' + name).ariaPressed)") == [
@@ -232,8 +234,7 @@ def test_it_stops_with_its_last_view_and_when_its_page_is_left(page):
     page.evaluate("() => { window.jupyterapp.shell.currentWidget.content.activeCellIndex = 1 }")
     command(page, "notebook:clear-cell-output")
     page.wait_for_selector(STAGE, state="detached")
-    ask(page, "view._session._turns and view._session._turns.join(5)")
-    assert ask(page, "print(view._session.on_view, view._session.motion.running, view._session._turns)") == "False False None"
+    eventually(page, "print(view._session.on_view, view._session.motion.running, view._session._turns)", "False False None")
 
 
 def test_a_kernel_that_was_restarted_is_told_and_nothing_can_be_pressed(page):

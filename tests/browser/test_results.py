@@ -21,7 +21,7 @@ def test_results_in_a_notebook(lab):
     outputs = page.locator(".jp-OutputArea-output")
     outputs.nth(2).locator("summary", has_text="Listing").click()
     assert outputs.nth(2).locator("pre", has_text="tick:").is_visible()
-    assert outputs.nth(0).locator("mjx-container").count() == 1
+    outputs.nth(0).locator("mjx-container").wait_for()  # typeset after it is shown; fails where there are two
     assert (
         outputs.nth(0).locator("strong").inner_text().endswith("wall: the force on the environment; without a value yet: k, x_o")
     )
