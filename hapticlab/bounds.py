@@ -7,7 +7,7 @@
 >>> round(found["exact stability"].K, 2)
 200.07
 
-Next: ``docs/passivity_bounds.md`` compares them in numbers, ``hl.measure.largest_stiffness`` measures on the paddle.
+Next: ``docs/explanation/passivity_bounds.md`` compares them in numbers, ``hl.measure.largest_stiffness`` measures on the paddle.
 """
 
 from .limits.bounds import abbott_okamura_limit as abbott_okamura

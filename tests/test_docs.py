@@ -18,13 +18,19 @@ pytestmark = pytest.mark.interpreter
 
 ROOT = Path(__file__).parents[1]
 #: its searches take minutes where the interpreter is the only engine
-LONG = "docs/measuring.md"
+LONG = "docs/how_to/measuring.md"
 README = (ROOT / "README.md").read_text("utf-8")
 #: the pages for users, which README held until version 0.2; their examples run one after the other
 MANUAL = [
-    f"docs/{name}.md"
-    for name in ("scenes", "live", "sharing", "site", "methods", "measuring", "limits", "people", "boards", "engines", "systems")
-] + [f"docs/{name}.md" for name in ("browser", "two_paddles", "owners_guide", "bring_up_card", "faults", "SAFETY")]
+    f"docs/{folder}/{name}.md"
+    for folder, names in {
+        "how_to": ("scenes", "live", "sharing", "browser", "measuring", "systems"),
+        "teaching": ("site",),
+        "explanation": ("methods", "limits", "people", "engines"),
+        "paddle": ("boards", "two_paddles", "owners_guide", "bring_up_card", "faults", "SAFETY"),
+    }.items()
+    for name in names
+]
 PAGES_THAT_RUN = ["README.md", *(path for path in MANUAL if "```python" in (ROOT / path).read_text("utf-8"))]
 
 
@@ -70,7 +76,7 @@ def test_the_picture_of_readme_is_that_of_its_example(tmp_path):
 
 
 def test_scenes_run(capsys):
-    names = run_page("docs/scenes.md")
+    names = run_page("docs/how_to/scenes.md")
     assert names["log"].x.shape == (20_000,)
     assert names["grid"].values.shape == (200, 3)
     assert names["program"].outputs[0].name == "F"
@@ -84,16 +90,16 @@ def test_scenes_run(capsys):
 
 
 def test_boards_run(capsys):
-    names = run_page("docs/boards.md")
+    names = run_page("docs/paddle/boards.md")
     # 2 N over 10 mm and on into 150 N/m: without damping 75 d^2 = 2 (0.01 + d), so 150 d = 5.16 N
     assert "at most 5.1 N" in capsys.readouterr().out
     assert names["felt"].F.max() > 0
 
 
 @pytest.mark.parametrize(
-    "path", [path for path in PAGES_THAT_RUN if path not in ("README.md", "docs/scenes.md", "docs/boards.md", LONG)]
+    "path", [path for path in PAGES_THAT_RUN if path not in ("README.md", "docs/how_to/scenes.md", "docs/paddle/boards.md", LONG)]
 )
-@pytest.mark.always("docs/[!m]*")  # methods.md tries 396 settings, which takes two seconds
+@pytest.mark.always("docs/*/[!m]*")  # methods.md tries 396 settings, which takes two seconds
 def test_pages_run(path, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # a page may write files
     run_page(path)
@@ -109,7 +115,7 @@ def test_a_long_page_runs(capsys):
 def test_pages_have_lines_that_fit_and_look_before_they_pull():
     lines = [line for path in ("README.md", "docs/README.md", *MANUAL) for line in (ROOT / path).read_text("utf-8").splitlines()]
     assert [line for line in lines if len(line) > 132 and line[:1] not in ("|", ">")] == []
-    boards = (ROOT / "docs/boards.md").read_text("utf-8")
+    boards = (ROOT / "docs/paddle/boards.md").read_text("utf-8")
     order = [boards.index(f"hapticlab {command}\n") for command in ("flash", "doctor", "bench", "calibrate --only force")]
     assert order == sorted(order)  # every stop is tried before more force
 
@@ -121,8 +127,10 @@ def test_readme_is_two_screens():
 
 def test_the_index_lists_every_page():
     index = (ROOT / "docs" / "README.md").read_text("utf-8")
-    pages = {path.name for path in (ROOT / "docs").glob("*.md")} - {"README.md"}
-    assert sorted(re.findall(r"^\| \[([\w.]+)\]\(\1\) \|", index, re.M)) == sorted(pages)
+    docs = ROOT / "docs"
+    pages = {path.relative_to(docs).as_posix() for path in docs.rglob("*.md")} - {"README.md", "index.md"}
+    pages -= {page for page in pages if page.startswith("papers/") and page != "papers/README.md"}  # listed there
+    assert sorted(re.findall(r"^\| \[([\w./]+)\]\(\1\) \|", index, re.M)) == sorted(pages)
 
 
 @pytest.mark.parametrize("path", ["README.md", "docs/README.md", *MANUAL])
@@ -180,7 +188,7 @@ def test_public_names_are_documented_and_exist():
     assert all(len(set(names)) == len(names) for names in pages)
     assert len(public()) > 180
     assert not [name for name, value in public().items() if callable(value) and not value.__doc__]
-    for text in (README, (ROOT / "docs/systems.md").read_text("utf-8")):
+    for text in (README, (ROOT / "docs/how_to/systems.md").read_text("utf-8")):
         assert f"Version {'.'.join(hl.__version__.split('.')[:2])}, emulated only" in text
     assert f'version: "{hl.__version__}"' in (ROOT / "CITATION.cff").read_text("utf-8")
 

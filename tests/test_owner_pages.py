@@ -14,7 +14,9 @@ from hapticlab.device.bring_up.steps import table
 from hapticlab.device.link.messages import FAULTS, RESULTS
 
 ROOT = Path(__file__).parents[1]
-FAULTS_PAGE, GUIDE, SAFETY = ((ROOT / "docs" / name).read_text("utf-8") for name in ("faults.md", "owners_guide.md", "SAFETY.md"))
+FAULTS_PAGE, GUIDE, SAFETY = (
+    (ROOT / "docs" / "paddle" / name).read_text("utf-8") for name in ("faults.md", "owners_guide.md", "SAFETY.md")
+)
 
 
 @pytest.fixture(scope="module")

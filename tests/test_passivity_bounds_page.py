@@ -1,4 +1,4 @@
-"""docs/passivity_bounds.md holds what its script finds now: the quick tables always, the whole page among the slow tests."""
+"""docs/explanation/passivity_bounds.md holds what its script finds now: quick tables always, the page among the slow tests."""
 
 import importlib.util
 from pathlib import Path

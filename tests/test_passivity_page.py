@@ -1,4 +1,4 @@
-"""docs/passivity_control.md holds what its script finds now, as far as a test has time for it."""
+"""docs/explanation/passivity_control.md holds what its script finds now, as far as a test has time for it."""
 
 import importlib.util
 from pathlib import Path

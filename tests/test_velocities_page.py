@@ -1,4 +1,4 @@
-"""docs/velocities.md holds what its script finds now: a quick table always, the whole page among the slow tests."""
+"""docs/explanation/velocities.md holds what its script finds now: a quick table always, the whole page among the slow tests."""
 
 import importlib.util
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What an owner of a paddle reads: the pages of docs/ that come with the package."""
+"""What an owner of a paddle reads: the pages of docs/paddle, which come with the package."""
 
 import webbrowser
 from pathlib import Path
@@ -8,7 +8,7 @@ from ..errors import PaddleError
 
 PACKAGE = Path(__file__).resolve().parents[1]
 #: of a wheel, and of a checkout
-PLACES = (PACKAGE / "docs", PACKAGE.parent / "docs")
+PLACES = (PACKAGE / "docs", PACKAGE.parent / "docs" / "paddle")
 
 
 def guide(parser, options):

@@ -18,7 +18,7 @@ from .begin import Command, Parser, lab_number
 TARGETS = ("pc", *(name for name, given in BOARDS.items() if given.hz))
 STEPS = ("wiring", "stops", "sensor", "sign", "force")
 TROUBLES = ("motor wires", "wrong wiring", "loose wire", "sensor direction", "dead band")
-#: name -> page of docs/ that comes with the package
+#: name -> page of docs/paddle, which comes with the package
 PAGES = {"owner": "owners_guide.md", "safety": "SAFETY.md", "faults": "faults.md", "card": "bring_up_card.md"}
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
 LEVELS = ("auto", "namespaces", "user", "landlock", "none")

@@ -14,7 +14,7 @@ from ..base.profile.estimate import Estimate
 from ..base.profile.paddle_profile import PaddleProfile
 
 _MADE_UP = "illustrative: published for no paddle"
-_ON_AN_EMULATED_UNO = "docs/boards.md, measured on an emulated Uno"
+_ON_AN_EMULATED_UNO = "docs/paddle/boards.md, measured on an emulated Uno"
 _OF_THE_KMA199 = "filter of the KMA199's data sheet (NXP, Rev. 2, table 11, note 5); the interval is illustrative"
 #: time constant of that filter, 0.7 kHz [s], taken as a pure delay
 _LAG = 1 / (2 * math.pi * 700)

@@ -21,7 +21,7 @@ TEMPLATE = Path(__file__).with_name("front_page.html")
 #: a notebook alone, which a telephone can show; JupyterLab's panels leave it a strip there
 NOTEBOOK = "notebooks/index.html?path="
 WORDS = ("No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten", "Eleven", "Twelve")
-#: measured in headless Chromium on two cores, from the link to a first cell that has run; docs/site.md has the table
+#: measured in headless Chromium on two cores, from the link to a first cell that has run; docs/teaching/site.md has the table
 SECONDS = "about 15 s on a laptop at the first visit"
 MEGABYTE = 1e6
 

@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))
 import predictors  # noqa: E402
 
-PAGE = (ROOT / "docs" / "predictors.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "explanation" / "predictors.md").read_text("utf-8")
 
 
 def cells(name):
@@ -54,4 +54,4 @@ def test_every_law_is_in_every_table():
     for name in ("plain", "bed", "conditions", "worst", "limits", "swings", "costs"):
         assert list(cells(name))[: len(LAWS)] == list(LAWS)
     assert list(cells("conditions")["zoh"]) == list(predictors.CONDITIONS)
-    assert (ROOT / "docs" / "predictors.png").exists() and "predictors.png" in PAGE
+    assert (ROOT / "docs" / "explanation" / "predictors.png").exists() and "predictors.png" in PAGE

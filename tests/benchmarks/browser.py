@@ -1,7 +1,7 @@
-"""Seconds of every lab, and of the pages' sweep, map and trade-off, in Pyodide and on this computer, for docs/browser.md.
+"""Seconds of every lab, and of the pages' sweep, map and trade-off, in Pyodide and on this computer, for docs/how_to/browser.md.
 
     python tests/benchmarks/browser.py            # print the table
-    python tests/benchmarks/browser.py --write    # and write it into docs/browser.md
+    python tests/benchmarks/browser.py --write    # and write it into docs/how_to/browser.md
 
 One Pyodide and one Python of this computer do all rows, one after the other. The seconds are those of a processor, which other
 programs on the computer change less than time by the clock: of node's main thread, where Python runs while V8 compiles in other
@@ -24,13 +24,13 @@ from both_ways import IN_PYODIDE, WORK  # noqa: E402
 from in_pyodide import Pyodide, wheel  # noqa: E402
 from pyodide_archive import CORE, LOCK, archive  # noqa: E402
 
-PAGE = ROOT / "docs" / "browser.md"
+PAGE = ROOT / "docs" / "how_to" / "browser.md"
 BEGIN, END = "<!-- written by tests/benchmarks/browser.py -->\n", "<!-- end -->\n"
 STUDIES = {
     "readme_example": "README's example: a run, its chatter, two limits, a live view",
     "sweep": "the sweep of [scenes.md](scenes.md), 600 walls",
     "wall_map": "the wall map of [measuring.md](measuring.md), 40 x 40 walls",
-    "tradeoff": "speed against accuracy of [methods.md](methods.md), 594 rows",
+    "tradeoff": "speed against accuracy of [methods.md](../explanation/methods.md), 594 rows",
 }
 
 

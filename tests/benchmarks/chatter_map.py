@@ -5,7 +5,7 @@
     python tests/benchmarks/chatter_map.py --random 3
 
 PLANTS and most of RATIOS are those on which the constants of the verdict were chosen. ``--random`` takes nine other plants
-and eight other ratios; ``--random 3`` draws them from another seed. docs/measuring.md has the numbers.
+and eight other ratios; ``--random 3`` draws them from another seed. docs/how_to/measuring.md has the numbers.
 
 The reference knows nothing of hapticlab. Handle, hand and law are one affine map for each side of the wall's edge, from the
 matrix exponential. It is followed from the start until the motion has ended, which says whether there is a cycle; a cycle

@@ -218,12 +218,12 @@ def worse(columns):
     return lines
 
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "boards.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "paddle" / "boards.md"
 BEGIN, END = "<!-- written by tests/benchmarks/hapkit.py --page -->\n", "<!-- end -->\n"
 
 
 def write_page(columns):
-    """Write the table into docs/boards.md."""
+    """Write the table into docs/paddle/boards.md."""
     lines = ["| | " + " | ".join(columns) + " |", "|" + (len(columns) + 1) * "---|"]
     for what, path, factor, form, _ in ROWS:
         cells = [shown(number(figures, path), None, factor, form).strip() for figures in columns.values()]
@@ -236,7 +236,7 @@ def main(arguments=None):
     """Measure, print the table, and write the JSON."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", metavar="FILE", help="also write the numbers to FILE")
-    parser.add_argument("--page", action="store_true", help="also write the table into docs/boards.md")
+    parser.add_argument("--page", action="store_true", help="also write the table into docs/paddle/boards.md")
     options = parser.parse_args(arguments)
     if missing():
         raise SystemExit(missing())

@@ -2,7 +2,7 @@
 
 Both checkouts do the same in JupyterLab and Chromium at 1280 x 800, with what `pip install -e ".[test]"` brings: the present
 one, and the commit BEFORE, unpacked into a temporary folder. Each pair is one picture in docs/images/notebook, and
-docs/notebook_pictures.md shows them all. ``--only NAME`` takes one of them; ``--look FOLDER`` also keeps the whole pictures.
+docs/project/notebook_pictures.md shows them all. ``--only NAME`` takes one of them; ``--look FOLDER`` also keeps whole pictures.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from lab import Lab, browsing, command, grab  # noqa: E402
 #: the last commit whose notebook had none of this
 BEFORE = "9d3011d"
 FOLDER = ROOT / "docs" / "images" / "notebook"
-PAGE = ROOT / "docs" / "notebook_pictures.md"
+PAGE = ROOT / "docs" / "project" / "notebook_pictures.md"
 WIDE, HIGH = 1280, 800
 HEAD = """# The notebook, before and after
 
@@ -105,7 +105,7 @@ def main():
             given.look.mkdir(parents=True, exist_ok=True)
             (given.look / f"{shot.name}.png").write_bytes(after)
         print(f"{shot.name:12} {(FOLDER / f'{shot.name}.png').stat().st_size / 1e3:4.0f} kB  {shot.words}")
-    parts = [f"![{shot.words} Before on the left, after on the right.](images/notebook/{shot.name}.png)" for shot in SHOTS]
+    parts = [f"![{shot.words} Before on the left, after on the right.](../images/notebook/{shot.name}.png)" for shot in SHOTS]
     words = [f"## {shot.words.rstrip('.')}\n\n{part}\n" for shot, part in zip(SHOTS, parts, strict=True)]
     PAGE.write_text("\n".join([HEAD.format(before=BEFORE), *words]), encoding="utf-8")
 

@@ -20,7 +20,7 @@ from hapticlab.errors import PaddleError
 
 CLOCKS_PER_US = 16  # of an Uno
 ROOT = Path(__file__).parents[2]
-FAULTS_PAGE, GUIDE, SAFETY = (ROOT / "docs" / name for name in ("faults.md", "owners_guide.md", "SAFETY.md"))
+FAULTS_PAGE, GUIDE, SAFETY = (ROOT / "docs" / "paddle" / name for name in ("faults.md", "owners_guide.md", "SAFETY.md"))
 
 
 def fault_quotes():

@@ -1,4 +1,4 @@
-"""How far the bounds on a wall's stiffness lie apart, and what each assumes: writes docs/passivity_bounds.md.
+"""How far the bounds on a wall's stiffness lie apart, and what each assumes: writes docs/explanation/passivity_bounds.md.
 
     python tests/benchmarks/passivity_bounds.py [--write]
 
@@ -15,7 +15,7 @@ import hapticlab as hl
 from hapticlab import t
 from hapticlab.errors import AnalysisError
 
-PAGE = Path(__file__).parents[2] / "docs" / "passivity_bounds.md"
+PAGE = Path(__file__).parents[2] / "docs" / "explanation" / "passivity_bounds.md"
 T = 1e-3
 LAWS = {"zoh": "(23.1)", "backward_difference": "(23.5)", "ellis": "(23.7)"}
 DELAYS = (0.0, 0.25, 0.5, 1.0, 2.0, 3.0)

@@ -1,4 +1,4 @@
-"""What a passivity controller changes, where it fails, and what it costs: writes docs/passivity_control.md.
+"""What a passivity controller changes, where it fails, and what it costs: writes docs/explanation/passivity_control.md.
 
     python tests/benchmarks/passivity_control.py [--write]
 
@@ -16,7 +16,7 @@ import hapticlab as hl
 from hapticlab import n, x
 from hapticlab.compiler.boards.cost import cost
 
-PAGE = Path(__file__).parents[2] / "docs" / "passivity_control.md"
+PAGE = Path(__file__).parents[2] / "docs" / "explanation" / "passivity_control.md"
 M, B, T = 0.05, 0.1, 1e-3
 STORED = hl.laws.Credit(stored=hl.laws.wall_energy())
 

@@ -1,7 +1,7 @@
-"""Every law of a virtual wall on one bounce and against one push, over what a real paddle has; writes docs/predictors.md.
+"""Every law of a virtual wall on one bounce, against one push, over real paddles; writes docs/explanation/predictors.md.
 
     python tests/benchmarks/predictors.py            print the tables (a minute or two)
-    python tests/benchmarks/predictors.py --write    and put them, and the figure, into docs/
+    python tests/benchmarks/predictors.py --write    and put them, and the figure, into docs/explanation
 
 The page's sentences are written by hand; tables stand between marks and are replaced. A test computes some of them again.
 """
@@ -18,7 +18,7 @@ from hapticlab.base.drawing import colour_map, house_style, new_figure
 from hapticlab.compiler.boards.cost import cost
 from hapticlab.rendering.wall_laws import LAWS, wall_law
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "explanation"
 BASE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
 #: Gillespie and Cutkosky (1996)
 BED = hl.SimulatedPaddle(m=0.35, b=0.0, T=0.01, hand=hl.Hand(m=0.006, k=500, intent=0.01))
@@ -191,7 +191,7 @@ def replaced(page, made):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help="put tables and figure into docs/")
+    parser.add_argument("--write", action="store_true", help="put tables and figure into docs/explanation")
     made, drawn = tables()
     for name, text in made.items():
         print(f"{name}\n{text}\n")

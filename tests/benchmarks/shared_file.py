@@ -1,9 +1,10 @@
 """Three shared files in a headless Chromium: their size, frames a second, pointer to paint, and what a tick costs.
 
-``python tests/benchmarks/shared_file.py [--seconds 10] [--write]``; ``--write`` puts the tables into docs/sharing.md. A hand
-drags the handle, then jumps and rests, as in ``live_view.py``; a picture is shown when its pixels differ from those before. A
-tick is that of the module alone in node, which has the engine of Chromium: the best of several rounds. The second table compares
-what a page could run: the linked program, or the firmware's core, which runs the scene's bytes and needs a paddle around it.
+``python tests/benchmarks/shared_file.py [--seconds 10] [--write]``; ``--write`` puts the tables into docs/how_to/sharing.md. A
+hand drags the handle, then jumps and rests, as in ``live_view.py``; a picture is shown when its pixels differ from those before.
+A tick is that of the module alone in node, which has the engine of Chromium: the best of several rounds. The second table
+compares what a page could run: the linked program, or the firmware's core, which runs the scene's bytes and needs a paddle
+around it.
 """
 
 import argparse
@@ -33,7 +34,7 @@ from hapticlab.compiler.engines.wasm_emit import emit  # noqa: E402
 from hapticlab.device.simulated.closed_loop import link  # noqa: E402
 from hapticlab.device.simulated.stepping import with_grip  # noqa: E402
 
-PAGE = HERE.parents[1] / "docs" / "sharing.md"
+PAGE = HERE.parents[1] / "docs" / "how_to" / "sharing.md"
 PADDLE = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 TICKS, ROUNDS = 20_000, 9
 SCENES = {
@@ -170,7 +171,7 @@ def core_of(program):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=10.0, help="of dragging, each")
-    parser.add_argument("--write", action="store_true", help="put the tables into docs/sharing.md")
+    parser.add_argument("--write", action="store_true", help="put the tables into docs/how_to/sharing.md")
     given = parser.parse_args()
     files, choices, paddle = [], [], with_grip(PADDLE)
     with tempfile.TemporaryDirectory() as folder, browsing() as browser:

@@ -1,4 +1,4 @@
-"""Velocity estimators, pulses on entry and damping compensation in numbers: writes docs/velocities.md.
+"""Velocity estimators, pulses on entry and damping compensation in numbers: writes docs/explanation/velocities.md.
 
     python tests/benchmarks/velocities.py [--write]
 
@@ -13,7 +13,7 @@ import numpy as np
 import hapticlab as hl
 from hapticlab.compiler.boards.cost import cost
 
-PAGE = Path(__file__).parents[2] / "docs" / "velocities.md"
+PAGE = Path(__file__).parents[2] / "docs" / "explanation" / "velocities.md"
 T, COUNT, B = 1e-3, 20e-6, 0.1
 SPREAD = COUNT / np.sqrt(12)
 PINCH = {"m": 0.02, "b": 1.0, "k": 200}

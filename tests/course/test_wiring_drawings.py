@@ -13,7 +13,7 @@ from hapticlab.course.drawings.wiring_files import wiring_svg
 from hapticlab.device.wiring import Wiring
 from hapticlab.device.wirings import BUILDS, built_as
 
-FILES = Path(__file__).parents[2] / "docs/images/wiring"
+FILES = Path(__file__).parents[2] / "docs/paddle/images/wiring"
 
 
 def level_words(axes, x, side):
@@ -65,7 +65,7 @@ def test_the_file_of_the_guide_is_this_drawing(name):
     """Compared by words and places, not by bytes: another matplotlib writes other bytes."""
     kept, now = ((FILES / f"{name}.svg").read_text("utf-8"), wiring_svg(BUILDS[name]))
     assert places(kept) == places(now), (
-        "write the files again: python -m hapticlab.course.drawings.wiring_files docs/images/wiring"
+        "write the files again: python -m hapticlab.course.drawings.wiring_files docs/paddle/images/wiring"
     )
     root = ElementTree.fromstring(kept)
     assert root[1].text.startswith("Wiring: ") and all(" ".join(one.end) in root[2].text for one in BUILDS[name].wires())

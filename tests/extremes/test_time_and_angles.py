@@ -93,7 +93,7 @@ def test_what_turns_like_a_motor_meets_the_limit_when_the_page_says(dtype, step)
         assert log.fault is None
     else:  # float32 adds up 0.4 rad with a rounding each tick
         assert abs(float(log.fault.split("t = ")[1].split(" s")[0]) - step) < 0.01 and "use dtype='float64'" in log.fault
-    page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text("utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "engines.md").read_text("utf-8")
     largest = TABLES[{"float32": "f32", "float64": "f64"}[dtype]].angle_limit
     apart, seconds = np.spacing(np.nextafter(np.dtype(dtype).type(largest), 0)), largest / 400
     when = f"{seconds:.0f} s" if seconds < 60 else f"{seconds / 3600:.0f} h"

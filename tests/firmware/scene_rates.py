@@ -1,4 +1,4 @@
-"""How fast the library's scenes run on each board: ``python tests/firmware/scene_rates.py`` writes the table of docs/boards.md.
+"""How fast the library's scenes run on each board: ``python tests/firmware/scene_rates.py`` writes it into docs/paddle/boards.md.
 
 Predicted by the package's model. Found on the Uno: the shortest period, in steps of 10 us, with which the real image runs the
 scene in the emulator, parameters set a hundred times a second and every sample sent, without a late step or a lost sample.
@@ -18,7 +18,7 @@ from hapticlab.compiler.boards.cost import cost
 from hapticlab.device.board.settings import nominal
 from hapticlab.errors import HapticlabError
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "boards.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "paddle" / "boards.md"
 BEGIN, END = "<!-- written by tests/firmware/scene_rates.py -->\n", "<!-- end -->\n"
 HAND = hl.Hand(m=0.05, b=3, k=400, intent=lambda t: 0.006 * np.sin(9 * t) + 0.003 * np.sin(31 * t))
 #: of the link: its bytes, and by them what takes a few us of a tick, differ from session to session

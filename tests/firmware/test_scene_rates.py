@@ -1,4 +1,4 @@
-"""The rates that docs/boards.md states: what the model says now, and what the real image does in the emulator."""
+"""The rates that docs/paddle/boards.md states: what the model says now, and what the real image does in the emulator."""
 
 import pytest
 from emulator import missing

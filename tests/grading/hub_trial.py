@@ -1,4 +1,4 @@
-"""Runs docs/server.md in a machine of its own: users, JupyterHub, proxy and exchange; writes what happened as JSON.
+"""Runs docs/teaching/server.md in a machine of its own: users, JupyterHub, proxy and exchange; writes what happened as JSON.
 
 It is started by test_hub.py as the first process of new mount, process and network namespaces, where root may make users and
 folders that nobody else sees, and where 127.0.0.1 is its own.
@@ -18,7 +18,7 @@ from pathlib import Path
 from hand_in import LABS, ROOT, WRONG, handed_in
 from hub_client import Person, wait_for
 
-PAGE = (ROOT / "docs" / "server.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "teaching" / "server.md").read_text("utf-8")
 LAB = LABS["02"]
 HUB = "http://127.0.0.1:8000"
 PASSWORD = "a paddle and a wall"

@@ -1,4 +1,4 @@
-"""docs/grading.md: its commands run, its code runs, and its numbers are those of the package."""
+"""docs/teaching/grading.md: its commands run, its code runs, and its numbers are those of the package."""
 
 import json
 import re
@@ -20,7 +20,7 @@ from hapticlab.grading.sessions.limits import MIB, Limits
 from hapticlab.grading.sessions.starter import LEVELS
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "grading.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "teaching" / "grading.md").read_text("utf-8")
 COMMANDS = [
     line.strip()
     for block in re.findall(r"^ *```sh\n(.*?)^ *```", PAGE, re.M | re.S)

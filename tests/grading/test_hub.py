@@ -1,4 +1,4 @@
-"""docs/server.md, a course on a server: its exchange and its commands anywhere, and all of it word for word with a JupyterHub.
+"""docs/teaching/server.md, a server: its exchange and its commands anywhere, and all of it word for word on a JupyterHub.
 
 The long version needs root on Linux, an environment with jupyterhub that every user may run, and configurable-http-proxy on
 PATH or in the folder that HAPTICLAB_PROXY names; ``.ci/hub`` installs both and runs it. It makes users, and writes to /etc and

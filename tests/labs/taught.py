@@ -1,7 +1,7 @@
 """What the labs teach: which sections of chapter 23 each lab works with, and how many public names.
 
     python tests/labs/taught.py            # print both, and the public names that no lab uses
-    python tests/labs/taught.py --write    # and write the table into docs/labs_for_instructors.md
+    python tests/labs/taught.py --write    # and write the table into docs/teaching/labs_for_instructors.md
 
 A lab works with a section if its text or its code names it, one of its equations or one of its figures. A public name is
 taught if the code of a lab, as it is handed out, uses it.
@@ -16,7 +16,7 @@ from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import code_of, read
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "labs_for_instructors.md"
+PAGE = ROOT / "docs" / "teaching" / "labs_for_instructors.md"
 BEGIN, END = "<!-- sections of the chapter -->\n", "<!-- end of the sections -->\n"
 #: section: title, its equations, its figures
 SECTIONS = {

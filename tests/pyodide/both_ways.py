@@ -96,7 +96,7 @@ def readme_example():
 
 
 def sweep():
-    """Return what the sweep of docs/scenes.md finds: the chatter of 600 walls."""
+    """Return what the sweep of docs/how_to/scenes.md finds: the chatter of 600 walls."""
     import numpy as np
 
     import hapticlab as hl
@@ -107,7 +107,7 @@ def sweep():
 
 
 def wall_map():
-    """Return what the map of docs/measuring.md says of 40 x 40 walls: passive, stable, chatters or unusable."""
+    """Return what the map of docs/how_to/measuring.md says of 40 x 40 walls: passive, stable, chatters or unusable."""
     import hapticlab as hl
 
     held = hl.SimulatedPaddle.from_profile("hapkit", coulomb=0.03, hand=hl.Hand("pinch", push=1.0))
@@ -116,7 +116,7 @@ def wall_map():
 
 
 def tradeoff():
-    """Return speed against accuracy of docs/methods.md: for each method the error of its force, and its cost on an Uno."""
+    """Return speed against accuracy of docs/explanation/methods.md: each method's error of force, and its cost on an Uno."""
     import hapticlab as hl
 
     tried = hl.methods.Tried(T=[2e-3, 1e-3])

@@ -96,7 +96,8 @@ def test_a_type_checker_passes():
 @pytest.mark.wide
 def test_readme_and_the_manual_pass(tmp_path):
     """The examples of each page, one after the other in one file."""
-    names = ("README", *(f"docs/{name}" for name in ("scenes", "live", "methods", "measuring", "people", "boards")))
+    pages = "how_to/scenes", "how_to/live", "how_to/measuring", "explanation/methods", "explanation/people", "paddle/boards"
+    names = ("README", *(f"docs/{page}" for page in pages))
     files = [tmp_path / f"page_{Path(name).name}.py" for name in names]
     for name, file in zip(names, files, strict=True):
         examples = re.findall(r"```python\n(.*?)```", (PACKAGE.parent / f"{name}.md").read_text("utf-8"), re.S)

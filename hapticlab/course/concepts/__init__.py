@@ -2,5 +2,5 @@
 
 In: a seed, a student's name and an occasion. Out: that student's questions with own numbers and an own order of options, and
 the notebook that asks them. Read ``question``, ``misconceptions``, one concept such as ``leak``, ``inventory`` and
-``questionnaire``. ``docs/concepts.md`` is for instructors.
+``questionnaire``. ``docs/teaching/concepts.md`` is for instructors.
 """

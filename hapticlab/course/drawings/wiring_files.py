@@ -1,4 +1,4 @@
-"""Write the drawing of every known wiring: ``python -m hapticlab.course.drawings.wiring_files docs/images/wiring``."""
+"""Write the drawing of every known wiring: ``python -m hapticlab.course.drawings.wiring_files docs/paddle/images/wiring``."""
 
 import sys
 from pathlib import Path

@@ -132,7 +132,7 @@ def signal(name: str, *, unit: str, initial: Term = 0, instead: Sequence[Velocit
     """Declare a discrete-time signal y(n), to be defined by an equation ``Eq(y(n), ...)`` in a scene's ``eom``.
 
     Its right side may use y(n-1), y(n-2): filters, observers and estimators are difference equations, and so are machines
-    with a state, such as a relay; docs/scenes.md, section "Machines that remember".
+    with a state, such as a relay; docs/how_to/scenes.md, section "Machines that remember".
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ def share(
     The file opens by a double click and shows what :func:`hapticlab.live` shows in a notebook: the picture, sliders, traces,
     the loop of force over position. The page runs the compiled program of scene, paddle and hand, so that the same hand
     feels the same forces as by ``paddle.run``, bit for bit; noise alone is drawn by a different generator, see
-    docs/sharing.md. The file never opens a port, so that no motor can move.
+    docs/how_to/sharing.md. The file never opens a port, so that no motor can move.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def share(
     ParameterError
         For sliders of what cannot be set, and a parameter without a value.
     AnalysisError
-        For a drawing function that does not use functions of NumPy alone, see docs/sharing.md.
+        For a drawing function that does not use functions of NumPy alone, see docs/how_to/sharing.md.
     OSError
         Where the file cannot be written.
 

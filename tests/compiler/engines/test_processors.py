@@ -61,7 +61,7 @@ def test_one_program_has_the_same_bits_under_the_linear_algebra_of_several_proce
     printed = on_each_processor(PROGRAM, tmp_path / "chain", Path(__file__).parent, cores=cores)
     solved, bits, forces = zip(*map(json.loads, printed), strict=True)
     assert all(found == bits[0] for found in bits)
-    # compiled anew, its constants differ in their last digits, as docs/engines.md says
+    # compiled anew, its constants differ in their last digits, as docs/explanation/engines.md says
     np.testing.assert_allclose(forces, [forces[0]] * len(cores), rtol=0, atol=1e-11 * np.abs(forces[0]).max())
     if len(set(solved)) == 1:
         pytest.skip("NumPy's linear algebra is not OpenBLAS for x86-64 here, and ran the same code in all of them")

@@ -93,7 +93,7 @@ def test_samples_of_mechanisms_and_contacts_are_those_of_python():
 
 
 def test_a_hand_that_aims_as_in_a_run_feels_the_same():
-    """The claim of docs/sharing.md, without Stepping between: the forces of ``paddle.run``."""
+    """The claim of docs/how_to/sharing.md, without Stepping between: the forces of ``paddle.run``."""
     aiming = replace(HAPKIT, hand=hl.Hand("pinch", intent=hl.people.MinimumJerk(end=0.02, duration=0.3)))
     log = aiming.run(DAMPED, duration=0.4, progress=False)
     told = page_data(Stage(HAPKIT, DAMPED, clock=lambda: 0.0))
