@@ -10,6 +10,7 @@ import json
 import os
 import sys
 import threading
+import time
 from collections import Counter
 from contextlib import suppress
 from fnmatch import fnmatchcase
@@ -21,12 +22,16 @@ from hapticlab.device import turns
 
 # before NumPy is loaded: on small matrices a second thread costs four times the time of one, and processes share the cores
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# before jsonschema is loaded, by nbformat: the 38 grammars of this one cost 1.6 s, and no notebook has an address that they check
+sys.modules.setdefault("rfc3987_syntax", None)
 
 IN_CI = os.environ.get("CI", "").lower() in ("1", "true", "yes")
 ALLOWED = os.environ.get("HAPTICLAB_ALLOWED_SKIP", "")
 #: for a test marked slow that says no other [s]; the limit of the others is in pyproject.toml
 LONGEST = 3600
 STDERR = pytest.StashKey()
+#: the limit that is watched now, and until when the next test of the same limit need not begin anew [s]
+WATCHED = pytest.StashKey()
 
 
 def pytest_addoption(parser):
@@ -46,7 +51,7 @@ def pytest_collection():
         return (yield)
     finally:
         gc.freeze()
-        gc.set_threshold(20_000)
+        gc.set_threshold(100_000)
         gc.enable()
 
 
@@ -74,20 +79,30 @@ def _case(item):
 
 
 @pytest.hookimpl(wrapper=True, trylast=True)
-def pytest_runtest_protocol(item):
+def pytest_runtest_protocol(item, nextitem):
     """End the whole run after twice a test's limit: a clean-up that waits or a call into C outlives the limit itself."""
     own = item.get_closest_marker("timeout")
     seconds = own.args[0] if own else float(item.config.getoption("timeout") or item.config.getini("timeout") or 0)
-    if seconds:
-        faulthandler.dump_traceback_later(2 * seconds, exit=True, file=item.config.stash[STDERR])
+    watched, until = item.config.stash.get(WATCHED, (0, 0))
+    if seconds != watched or time.monotonic() > until:  # to begin anew for each of many short tests takes as long as they do
+        _watch(item.config, seconds)
     try:
         return (yield)
     finally:
+        if nextitem is None:
+            _watch(item.config, 0)
+
+
+def _watch(config, seconds):
+    config.stash[WATCHED] = seconds, time.monotonic() + seconds / 100
+    if seconds:
+        faulthandler.dump_traceback_later(2 * seconds, exit=True, file=config.stash[STDERR])
+    else:
         faulthandler.cancel_dump_traceback_later()
 
 
-def pytest_enter_pdb():
-    faulthandler.cancel_dump_traceback_later()  # who debugs may take longer
+def pytest_enter_pdb(config):
+    _watch(config, 0)  # who debugs may take longer
 
 
 @pytest.fixture(scope="module", autouse=True)

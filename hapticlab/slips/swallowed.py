@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import lru_cache
 
 from .own_line import OwnLine, code_of, parsed
 
@@ -34,7 +35,9 @@ def swallowed(own: OwnLine, said: str) -> str:
 
 def _read(own: OwnLine) -> Iterator[ast.AST]:
     """Yield every part of the statement, and of what defines its names, in the same notebook or file."""
-    known = _definitions(own)
+    cells = own.frame.f_globals.get("In")  # what IPython has run so far
+    sources = [cell for cell in cells if isinstance(cell, str)] if isinstance(cells, list) else []
+    known = _definitions((*sources, "".join(own.source)))
     waiting, seen = [own.walk()], set()
     while waiting:
         for node in waiting.pop(0):
@@ -44,12 +47,11 @@ def _read(own: OwnLine) -> Iterator[ast.AST]:
                 waiting += [list(ast.walk(one)) for one in known.get(node.id, [])]
 
 
-def _definitions(own):
+@lru_cache(maxsize=4)  # a scene after the other is made in the same cells, and to walk them takes longer than to make one
+def _definitions(sources: tuple[str, ...]) -> dict[str, list[ast.AST]]:
     """Return the last statement that defines each name, in all cells."""
-    cells = own.frame.f_globals.get("In")  # what IPython has run so far
-    sources = [cell for cell in cells if isinstance(cell, str)] if isinstance(cells, list) else []
     found: dict[str, list[ast.AST]] = {}
-    for node in (one for source in [*sources, "".join(own.source)] for one in ast.walk(parsed(source))):
+    for node in (one for source in sources for one in ast.walk(parsed(source))):
         if isinstance(node, ast.FunctionDef):
             found[node.name] = [node]
         for target in getattr(node, "targets", [getattr(node, "target", None)]):
