@@ -38,11 +38,12 @@ def number(
     least: float | None = None,
     above: float | None = None,
     most: float | None = None,
+    below: float | None = None,
     what: str | None = None,
     why: str = "",
     error: type[HapticlabError] = AnalysisError,
 ) -> float:
-    """The finite number given, as a float in SI: ``least`` or more, ``above`` a limit, ``most`` or less.
+    """The finite number given, as a float in SI: ``least`` or more, ``above`` a limit, ``most`` or less, ``below`` a limit.
 
     A quantity with a unit may be a text, such as "1 ms".
 
@@ -67,9 +68,9 @@ def number(
     except (TypeError, ValueError, OverflowError):
         value = None
     finite = value is None or math.isfinite(value)
-    if value is not None and finite and _within(value, least, above, most):
+    if value is not None and finite and _within(value, least, above, most, below):
         return value
-    need = _needs(owner, _range(what or name, least, above, most, finite))
+    need = _needs(owner, _range(what or name, least, above, most, below, finite))
     if value is None:
         reason = f": {why}" if why and not why.endswith(".") else ""
         form = f"a number in {unit}, or a text with its unit, such as '2 {unit}'" if has_unit else "a number"
@@ -110,8 +111,9 @@ def _quantity(name, text, unit, error):
         raise error(str(refusal)) from None
 
 
-def _within(value: float, least: float | None, above: float | None, most: float | None) -> bool:
-    return (least is None or value >= least) and (above is None or value > above) and (most is None or value <= most)
+def _within(value: float, least: float | None, above: float | None, most: float | None, below: float | None) -> bool:
+    is_low = (least is not None and value < least) or (above is not None and value <= above)
+    return not (is_low or (most is not None and value > most) or (below is not None and value >= below))
 
 
 def period(T: Any, error: type[HapticlabError] = AnalysisError) -> float:
@@ -182,7 +184,7 @@ def _needs(owner, what):
     return f"{owner} needs {what}" if owner else f"needs {what}"
 
 
-def _range(name, least, above, most, finite):
-    given = {">=": least, ">": above, "<=": most}
+def _range(name, least, above, most, below, finite):
+    given = {">=": least, ">": above, "<=": most, "<": below}
     limits = [f"{sign} {limit:g}" for sign, limit in given.items() if limit is not None]
     return f"{name} {' and '.join(limits + ['finite'] * (not finite))}" if limits else f"a finite {name}"

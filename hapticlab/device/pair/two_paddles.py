@@ -12,7 +12,7 @@ from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from ..board.serial_paddle import SerialPaddle
 from ..simulated.simulated_paddle import SimulatedPaddle
-from ..turns import begin, has_threads
+from ..turns import begin
 from .coupled_run import CoupledRun, link_times
 from .relay import Relay
 from .sides import BoardSide, SimulatedSide
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: between two looks at boards that run by their own clocks [s]
 LOOK = 5e-4
+#: of a wait [s]: Windows interrupts none for a thread before it is over
+SLICE = 0.05
 #: of a time that is a whole number of ticks [s]
 ROUNDING = 1e-9
 NO_RUN = "nothing runs; start the pair first: pair.start()"
@@ -106,7 +108,8 @@ class TwoPaddles(ShowsItself):
             raise PaddleError(f"T = {left.T:g} s and {right.T:g} s; two paddles in virtual time need the same T")
         late = {"delay": delay, "jitter": jitter}
         delay, jitter = (number(name, s, "s", "a link", least=0, error=PaddleError) for name, s in late.items())
-        self._loss, self._seed = number("loss", loss, "", "a link", least=0, most=1, error=PaddleError), seed
+        why = "no message would come"
+        self._loss, self._seed = number("loss", loss, "", "a link", least=0, below=1, why=why, error=PaddleError), seed
         tick = 0.0 if self._realtime else left.T
         self.delay = max(tick, round(delay / tick) * tick) if tick else delay
         self.jitter, self._turns, self._running = jitter, None, False
@@ -251,12 +254,9 @@ class TwoPaddles(ShowsItself):
                 self._now = round(self._now / T + 1) * T
 
     def _wait_by_the_clock(self, seconds):
-        until = time.monotonic() + seconds
-        while self._fault is None and (left := until - time.monotonic()) > 0:
-            if has_threads():
-                time.sleep(min(left, 0.05))
-            else:
-                self._turns.join(min(left, 0.05))
+        turns, until = self._turns, time.monotonic() + seconds
+        while (left := until - time.monotonic()) > 0 and not turns.join(min(left, SLICE)):
+            pass
 
     def __str__(self) -> str:
         left, right = (side.source.program.name for side in self._sides)

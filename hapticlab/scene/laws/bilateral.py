@@ -101,7 +101,7 @@ def bilateral_coupling(
       where the follower heard the leader. The follower's gain comes with it, so that both forces fade together.
     * ``"wave"``: a line of wave impedance b (Anderson and Spong 1989; Niemeyer and Slotine 1991), F = b (v - r). The
       wave r [m/s] that arrives is 2 v_other - r_other, where the echo r_other is the wave that the other side used: no
-      more than velocities are needed. A handle reflects waves, and fast ones with a gain slightly above 1, because its
+      more than velocities are needed. While the gain is below 1 the wave that is sent has the gain too. A handle reflects waves, and fast ones with a gain slightly above 1, because its
       force is held while it moves on: a low-pass filter of the wave that arrives takes that away. At rest a delay d and
       the filter make a spring b/(d + 1/(2 pi cutoff)) of the line. k (0 unless bound) adds a spring against drift, which
       is not passive under delay.
@@ -153,8 +153,9 @@ def bilateral_coupling(
     filtering = []
     if wave:
         came, filtering = _filtered(2 * far["other_v"] - far["echo_v"], cutoff)
-        past = gain * (v(n) - came)
-        force, watch = b * past + gain * k * (x(n) - far["other_x"]), {"heard_v": v(n) - past}
+        force = gain * (b * (v(n) - came) + k * (x(n) - far["other_x"]))
+        # the wave that is sent, 2 v - heard_v, fades with the force: without work of the handle it would be energy from nowhere
+        watch = {"heard_v": 2 * v(n) - gain * (2 * v(n) - came)}
     elif leads:
         stretch, rate = far["echo_x"] - far["other_x"], far["echo_v"] - far["other_v"]
         force, watch = gain * far["other_gain"] * (k * stretch + b * rate), {}

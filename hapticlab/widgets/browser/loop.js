@@ -188,7 +188,7 @@ class Loop {
   // What the loop says, in two short sentences: how much, and who gave it.
   words() {
     const who = this.touches ? "contact" : "cycle"
-    if (!this.shown) return [`No whole ${who} yet`, this.touches ? "Push in, and come out again." : "Move to and fro."]
+    if (!this.shown) return [`No whole ${who} yet`, this.touches ? "Push in, and come out again." : "Move the handle back and forth."]
     const several = this.many > 2
     const energy = 1000 * (several ? this.mean : this.shown.energy)
     const none = Math.abs(energy) < 0.005

@@ -48,11 +48,12 @@ def position_force(x, v, F, i, n, d):
 
 
 def wave(x, v, F, i, n, d):
-    """The other's outgoing wave v + F/b arrives, and a filter of 50 Hz keeps a part of what arrived before."""
+    """The other's outgoing wave v + F/b arrives, once it has heard; a filter of 50 Hz keeps a part of what arrived before."""
     if n < d:
         return 0.0
     b, gain, kept = 1.5, 2 * np.pi * 50 * T, v[i, n - 1] - F[i, n - 1] / 1.5 if n > d else 0.0
-    return b * (v[i, n] - (kept + gain * (v[1 - i, n - d] + F[1 - i, n - d] / b)) / (1 + gain))
+    came = v[1 - i, n - d] + F[1 - i, n - d] / b if n >= 2 * d else 0.0
+    return b * (v[i, n] - (kept + gain * came) / (1 + gain))
 
 
 @pytest.mark.parametrize(
@@ -72,6 +73,15 @@ def test_it_is_the_law_written_out_with_the_delay_that_was_asked_for(architectur
     assert abs(found - x).max() < 2e-5 * abs(x).max()  # float32 on the board
     assert abs(np.array([run.left.F, run.right.F]) - F).max() < 1e-3 * abs(F).max()
     assert (run.to_right.median, run.to_right.worst) == pytest.approx((7 * T, 7 * T))
+
+
+@pytest.mark.parametrize(("ramp", "delay", "v"), [(0.02, "50 ms", (0.2, 0.0)), (0.1, "5 ms", (0.2, 0.2)), (0.5, T, (0.2, 0.2))])
+def test_waves_give_handles_nothing_that_move_before_the_first_message(ramp, delay, v):
+    """Against the work of both motors as the recordings have it; the handles have 1 mJ each."""
+    side = hl.laws.bilateral_coupling("wave", engagement=hl.laws.Engagement(ramp=ramp, jump=1.0))(b=1.5)
+    run = hl.devices.TwoPaddles(paddle(), paddle(), side, delay=delay).run(0.5, v=v)
+    given = -sum(np.cumsum(log.F[:-1] * np.diff(log.x)) for log in (run.left, run.right))
+    assert given.max() < 1e-6 and given[-1] < -1e-4
 
 
 @pytest.mark.wide
@@ -133,6 +143,8 @@ def test_a_board_is_not_given_twice_and_a_scene_must_hear():
         hl.devices.TwoPaddles(paddle(), paddle(), hl.laws.bilateral_coupling("position-force", role="leader")(k=5), side)
     with pytest.raises(hl.errors.PaddleError, match="same T"):
         hl.devices.TwoPaddles(paddle(), paddle(T=5e-4), side)
+    with pytest.raises(hl.errors.PaddleError, match="loss = 1; a link needs loss >= 0 and < 1: no message would come"):
+        hl.devices.TwoPaddles(paddle(), paddle(), side, loss=1)
 
 
 @pytest.mark.parametrize("pace", ["", "?pace=real"])

@@ -10,7 +10,7 @@ def opposite(lab):
 
 
 def a_few_samples_longer(lab):
-    return 0 < lab.cycles[1.0] - lab.cycle_theory < 5 * lab.T
+    return 0 < lab.cycles[1.0] - lab.cycle_theory <= 4 * lab.T
 
 
 def b_chatters(lab):
@@ -26,7 +26,7 @@ CLAIMS = [
     ("**The rest agrees with your formula**", loops_as_expected, ""),
     ("The hand loses with A what it gains with B.", opposite, ""),
     ("over two presses they cancel.", lambda lab: abs(lab.areas["pen"]) < lab.late, ""),
-    ("so its cycle is up to five samples longer than yours", a_few_samples_longer, ""),
+    ("so its cycle is up to four samples longer than yours", a_few_samples_longer, ""),
     ("the relay switches on every two or three samples", lambda lab: 2 <= lab.cycles[0.0] / lab.T <= 3, ""),
     ("**A band of six counts is quiet, and no band at all is not.**", lambda lab: lab.flips[6] == 0 and lab.flips[0] > 10, ""),
     ("**Button A clicks once, with or without a band.", lambda lab: {lab.clicks["A", hops] for hops in (0, 0.3, 3)} == {1}, ""),
