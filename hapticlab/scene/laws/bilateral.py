@@ -101,10 +101,10 @@ def bilateral_coupling(
       where the follower heard the leader. The follower's gain comes with it, so that both forces fade together.
     * ``"wave"``: a line of wave impedance b (Anderson and Spong 1989; Niemeyer and Slotine 1991), F = b (v - r). The
       wave r [m/s] that arrives is 2 v_other - r_other, where the echo r_other is the wave that the other side used: no
-      more than velocities are needed. While the gain is below 1 the wave that is sent has the gain too. A handle reflects waves, and fast ones with a gain slightly above 1, because its
-      force is held while it moves on: a low-pass filter of the wave that arrives takes that away. At rest a delay d and
-      the filter make a spring b/(d + 1/(2 pi cutoff)) of the line. k (0 unless bound) adds a spring against drift, which
-      is not passive under delay.
+      more than velocities are needed. While the gain is below 1 the wave that is sent has the gain too. A handle
+      reflects waves, and fast ones with a gain slightly above 1, because its force is held while it moves on: a low-
+      pass filter of the wave that arrives takes that away. At rest a delay d and the filter make a spring b/(d + 1/(2
+      pi cutoff)) of the line. k (0 unless bound) adds a spring against drift, which is not passive under delay.
 
     The force has a gain from 0 to 1, which is 0 until the other is heard and falls to 0 where the other is silent: see
     :class:`Engagement`.
