@@ -160,10 +160,10 @@ def compared(F, reference, T, delay=0.0):
         held, felt = np.repeat(F, per), _felt(reference, ticks * per + 1, delay)
         begins, ends = held - felt[:-1], held - felt[1:]
         steps = max(math.floor((reference.horizon - delay) / step + 1e-9), 0)
-        size, hold = np.abs(at_samples), np.abs(begins[: steps + 1])
         begins, ends = begins[: max(steps, 1)], ends[: max(steps, 1)]
+        size, hold = np.abs(at_samples), np.maximum(np.abs(begins), np.abs(ends))  # the end: just before the next force
         square = np.mean(begins**2 + begins * ends + ends**2) / 3  # of a line from one to the other
-        errors = size.max(), np.sqrt(np.mean(size**2)), hold.max(initial=0.0), np.sqrt(square)
+        errors = size.max(), np.sqrt(np.mean(size**2)), hold.max(), np.sqrt(square)
     errors = [float(e) if math.isfinite(e) else math.inf for e in errors]
     return ForceError(*errors, peak, unstable, reference.certifies(errors[0]))
 

@@ -28,9 +28,7 @@ def test_a_force_that_is_right_at_the_samples_is_wrong_between_them():
     T = 1e-3
     error = force_error(hl.compile(SPRING, T=T, dtype="float64"), TRUE)
     assert error.max < 1e-14 and error.rms < 1e-14
-    # the last point of a period that is looked at is 7/8 T after the sample, where F has moved by F' 7/8 T at most
-    expected = K * A * OMEGA * 7 / 8 * T
-    assert error.hold == pytest.approx(expected, rel=1e-3)
+    assert error.hold == pytest.approx(K * A * OMEGA * T, rel=1e-3)  # at the end of a period F has moved by F' T at most
     # mean over a period of (F' u)^2, u = 0..T, and over a sine of F'^2
     assert error.hold_rms == pytest.approx(K * A * OMEGA * T / np.sqrt(3) / np.sqrt(2), rel=0.05)
     assert error.peak == pytest.approx(K * A, rel=1e-6)
@@ -46,8 +44,8 @@ def test_an_error_at_the_samples_is_found_in_size_and_in_the_mean():
 
 def test_a_delay_moves_the_held_force():
     F, T = TRUE.F[::8], 1e-3
-    # felt from T/2 on: right in the middle of its period were F linear, wrong by F' (T/2 + 7/8 T) at the end of it
-    assert compared(F, TRUE, T, delay=T / 2).hold == pytest.approx(K * A * OMEGA * (0.5 + 7 / 8) * T, rel=1e-3)
+    # felt from T/2 on: right in the middle of its period were F linear, wrong by F' (T/2 + T) at the end of it
+    assert compared(F, TRUE, T, delay=T / 2).hold == pytest.approx(K * A * OMEGA * (0.5 + 1) * T, rel=1e-3)
 
 
 def test_what_blows_up_says_when():
