@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 LANES, ROUNDS = 33, 3
 #: a run lasts so many times what the damping left needs to take all but 1/e of a motion, within bounds [s]
 SETTLED, SHORTEST, LONGEST = 25.0, 1.0, 20.0
+#: less than so much of what a handle needs to keep moving is trembling: it stretches the hand's spring until the friction
+#: yields, and a free one is faster than the width of the sign
+TREMBLING = 0.2
 #: samples that are simulated at a time: memory for a few dozen lanes
 CHUNK = 4000
 
@@ -47,7 +50,8 @@ class OverCompensation(ShowsItself):
     dry : array of shape (lanes,)
         Parts of the Coulomb friction that were simulated first.
     motion : array of shape (lanes,)
-        The amplitude [m] about the hand's spring, or the speed [m/s] of a free handle, at the end; 0 at rest.
+        The amplitude [m] about the hand's spring, or the speed [m/s] of a free handle, at the end; 0 at rest. The noise
+        of a sensor makes a handle tremble, which does not count as motion that stays.
     expected : array of shape (lanes,)
         The same by the closed form.
     duration : float
@@ -164,7 +168,7 @@ def over_compensation(
 
 def _first_moving(runs, dry, motion):
     for _ in range(ROUNDS):
-        moving = np.flatnonzero(motion > 0)
+        moving = np.flatnonzero(motion > runs.trembling)
         if not len(moving):
             raise AnalysisError(f"the handle comes to rest at all values up to dry = {dry[-1]:.4g}; give a larger up_to")
         if moving[0] == 0:
@@ -174,7 +178,7 @@ def _first_moving(runs, dry, motion):
         below, above = dry[moving[0] - 1], dry[moving[0]]
         dry = np.linspace(below, above, LANES)
         motion = runs(dry)
-    return float(dry[np.flatnonzero(motion > 0)[0]])
+    return float(dry[np.flatnonzero(motion > runs.trembling)[0]])
 
 
 def _expected(ideal, viscous, dry):
@@ -196,6 +200,7 @@ class _Runs:
         self.inputs = paddle.inputs(paddle.ticks(duration))
         hand = paddle.hand
         self.rest = 0.0 if hand is None or hand.intent is None else hand.intent
+        self.trembling = TREMBLING * (paddle.coulomb / ideal.k if ideal.k else width)
 
     def __call__(self, dry):
         """Return the amplitude or the speed that stays, for each part."""

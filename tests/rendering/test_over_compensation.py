@@ -47,6 +47,13 @@ def test_a_resting_hand_elsewhere_is_the_same():
     assert found[0].limit == pytest.approx(found[1].limit, abs=1e-4)  # float32 samples of 10 mm
 
 
+def test_a_handle_that_trembles_by_the_noise_of_its_sensor_does_not_hunt():
+    """1 um, an error of 1.4 mm/s in each velocity: it trembles by up to 42 um, and then hunts by 0.9 mm, a little earlier."""
+    quiet, noisy = (over_compensation(paddle(hand=hl.Hand(k=20), noise=one), speed=2e-3) for one in (0.0, 1e-6))
+    assert noisy.motion[noisy.dry < 0.95 * quiet.limit].max() > 1e-5
+    assert 0.9 * quiet.limit < noisy.limit <= quiet.limit
+
+
 def test_a_velocity_that_lags_needs_more():
     """A window has no closed form of its own, and an encoder none at all: simulated all the same."""
     rough = paddle(counts_per_metre=5e4, hand=hl.Hand(k=20))
