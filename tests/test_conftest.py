@@ -59,6 +59,7 @@ def run(folder, environment, *options):
         ({"CI": "true", "HAPTICLAB_ALLOWED_SKIP": "needs a board"}, 1),
     ],
 )
+@pytest.mark.always("environment1-1", "environment2-0")
 def test_skip_is_a_failure_in_ci(tmp_path, environment, code):
     (tmp_path / "test_it.py").write_text(SKIPPING)
     done = run(tmp_path, environment)

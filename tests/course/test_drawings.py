@@ -11,7 +11,7 @@ from hapticlab.course.drawings import pen
 from hapticlab.course.drawings.drawing import SHEETS
 
 
-@pytest.mark.always("paddle", "drive", "loop", "sample_and_hold", "signs", "wiring motor_shield")
+@pytest.mark.always("paddle", "loop", "signs")
 @pytest.mark.parametrize("name", SHEETS)
 def test_a_page_shows_a_drawing_in_its_own_colour_and_with_words(name):
     drawn = hl.devices.drawing(name)
@@ -41,7 +41,7 @@ def luminance(colour):
     return np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4) @ [0.2126, 0.7152, 0.0722]
 
 
-@pytest.mark.always("paddle", "drive", "loop", "sample_and_hold", "signs", "wiring motor_shield", "wiring pico_as5048a")
+@pytest.mark.always("paddle", "drive", "wiring pico_as5048a")
 @pytest.mark.parametrize("name", SHEETS)
 def test_no_word_lies_beyond_the_sheet_or_on_another(name):
     figure = hl.devices.drawing(name).plot()

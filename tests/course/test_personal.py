@@ -23,6 +23,7 @@ FORMULAS = {
 
 
 @pytest.mark.parametrize("name", FORMULAS)
+@pytest.mark.always("damping_that_pays")
 def test_each_student_earns_by_own_numbers_and_by_no_others(name):
     folder, formula = FORMULAS[name]
     lab, answers = folder.lab(), ANSWERS / folder.name

@@ -130,6 +130,7 @@ def test_runs_are_independent(paddle):
 
 
 @pytest.mark.parametrize("duration", [0, -1, float("nan"), float("inf"), "1", 1e-9])
+@pytest.mark.always("ideal-*", "sim:// late-*", "emulated Uno-*")
 def test_bad_durations_are_refused(paddle, duration):
     with pytest.raises(HapticlabError, match="duration"):
         paddle.run(WALL(k=150, x_o=0.001), duration=duration)

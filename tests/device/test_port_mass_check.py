@@ -37,6 +37,7 @@ def growth_of(ringing, order):
 
 @pytest.mark.parametrize("velocity", ["measured", "backward_difference"])
 @pytest.mark.parametrize("delay", [0.0, 0.4e-3, 1e-3, 2.3e-3])
+@pytest.mark.always("0.0-measured", "0.001-backward_difference")
 def test_a_simulated_paddle_rings_with_that_growth(velocity, delay):
     # a mass that moves with the handle is felt as mp (v(n) - v(n-1))/T
     mp = hl.parameters("mp", units="kg")

@@ -45,6 +45,7 @@ def test_steps_by_hand():
 
 
 @pytest.mark.parametrize(("down", "factor", "weight"), [(2, 1.25, 1.0), (1, 1.2, 3.0), (3, 1.5, 1.0)])
+@pytest.mark.always("1-*")
 def test_where_it_settles_is_where_a_long_run_turns(down, factor, weight):
     curve = Psychometric(0.2, 1.0, lapse=0.01)
     stairs = UpDown(

@@ -199,7 +199,7 @@ def damaged(draw):
     return replace(program, tick=replace(program.tick, instructions=tuple(code)))
 
 
-@settings(EVERY_DRAW, max_examples=20)
+@settings(EVERY_DRAW, max_examples=8)
 @given(damaged(), rows(("f32",)))
 def test_a_damaged_program_is_refused_in_words_or_runs_as_any_other(program, handle):
     try:
@@ -207,6 +207,13 @@ def test_a_damaged_program_is_refused_in_words_or_runs_as_any_other(program, han
     except ProgramError:
         return
     ends_alike_on_every_engine(program, handle)
+
+
+@pytest.mark.wide
+@settings(EVERY_DRAW, max_examples=30)
+@given(damaged(), rows(("f32",)))
+def test_a_damaged_program_is_refused_in_words_or_runs_as_any_other_many_times(program, handle):
+    test_a_damaged_program_is_refused_in_words_or_runs_as_any_other.hypothesis.inner_test(program, handle)
 
 
 # any finite numbers at the boundary of an engine

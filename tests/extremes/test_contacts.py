@@ -44,6 +44,7 @@ def falls(law, **options):
 
 
 @pytest.mark.parametrize("e", [0.0, 0.3, 0.8, 0.95])
+@pytest.mark.always("0.0", "0.8")
 def test_infinitely_many_bounces_end_at_their_instant_and_rest_on_the_handle(e):
     """They end at sqrt(2 h/g) (1 + e)/(1 - e), Zeno's limit; rest from the rest speed on cuts off less than 2 v/g of it."""
     end = math.sqrt(2 * 0.04 / G) * (1 + e) / (1 - e)

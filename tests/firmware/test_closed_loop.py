@@ -67,6 +67,7 @@ def test_three_numbers_a_millisecond_arrive_without_loss_and_on_time():
 
 
 @pytest.mark.parametrize("running", [False, True])
+@pytest.mark.always("True")
 def test_a_ping_takes_less_than_a_millisecond(running):
     with emulated_uno(HAND) as paddle:
         if running:

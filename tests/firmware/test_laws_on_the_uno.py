@@ -48,6 +48,7 @@ ALWAYS = "kalman", "brake"  # a third of a second each; the others with -m slow
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in ALWAYS else pytest.mark.slow) for n in scenes()])
+@pytest.mark.always("brake")
 def test_it_runs_with_the_bits_of_the_core_and_the_load_that_was_said(name):
     log, said, cycles, worst = run_on_the_uno(scenes()[name], 0.25)
     print(f"\n{name}: {said.typical} cycles of the scene, {cycles:.0f} of a step, longest {worst}, {said.verdict}")

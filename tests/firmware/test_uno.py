@@ -102,6 +102,7 @@ def test_direction_changes_with_the_motor_running(start):
 
 
 @pytest.mark.parametrize("period", [250, 1000, 1237, 10000])
+@pytest.mark.always("250", "1237")
 def test_the_period_is_exact(start, period):
     """Over a second: each distance to one count of the timer, their sum to the last tick's distance from the grid."""
     board = start()
@@ -161,6 +162,7 @@ def sweep(board, sensor, begin, end, speed):
 
 @pytest.mark.parametrize("wrap", [920, 700])
 @pytest.mark.parametrize("speed", [20e3, 300e3])
+@pytest.mark.always("*-920")
 def test_turns_of_the_magnet_are_counted(start, wrap, speed):
     board = start(settings=hapkit(wrap=wrap), run=0)
     sensor = MagnetoresistiveSensor(1.0, wrap=wrap)
@@ -198,6 +200,7 @@ def test_a_sensor_that_uses_the_whole_range_has_no_band(start):
 
 
 @pytest.mark.parametrize("speed", [3e3, 60e3])
+@pytest.mark.always("60000.0")
 def test_the_encoder_is_counted(start, speed):
     board = start(settings=hapkit(sensor=SENSORS["QUADRATURE"]), run=0)
     sensor = QuadratureSensor(1.0)

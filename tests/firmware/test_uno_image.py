@@ -100,7 +100,7 @@ def test_the_stack_fits(image):
 
 
 @pytest.mark.parametrize("make", FITS, ids=lambda make: make.__name__)
-@pytest.mark.always("wall", "cart_pole")
+@pytest.mark.always("cart_pole")
 def test_the_stack_keeps_its_bound(connect, image, make):
     T = 1e-3 if make in SCENES[:1] else 2e-3
     paddle, loop = connect(T=T)

@@ -68,6 +68,7 @@ def difference(K, B, tau):
 
 
 @pytest.mark.parametrize(("B", "tau"), [(0.4, 0.0), (0.4, 3e-3), (1.5, 2e-3), (-0.05, 1e-3)])
+@pytest.mark.always("0.4-0.003", "-0.05-0.001")
 def test_a_filtered_velocity(B, tau):
     expected = edge(lambda K: difference(K, B, tau) if tau else ([K + B / mp.mpf(T), -B / mp.mpf(T)], [1, 0]))
     found = stability_limit(paddle(), law=lambda K: LinearLaw.of("zoh", K=K, B=B, T=T, velocity_filter=tau))
@@ -75,6 +76,7 @@ def test_a_filtered_velocity(B, tau):
 
 
 @pytest.mark.parametrize("B", [0.0, 0.1])
+@pytest.mark.always("0.1")
 def test_the_filter_around_spring_and_damper(B):
     """Eq. (23.8) around K and B together; a scene, compiled, is read off its tick."""
 

@@ -21,6 +21,7 @@ def paddle(delay=0.0, b=b):
 
 
 @pytest.mark.parametrize("b_c", [0.0, 0.03, 0.11, 0.2])
+@pytest.mark.always("0.0", "0.11")
 def test_without_delay_it_is_eq_23_10(b_c):
     """Adams and Hannaford's couple alone: k_c < 2 (b - b_c)/T; nothing that hangs on it asks for more."""
     assert coupler_design(paddle(), b_c=b_c).k_c == pytest.approx(2 * (b - b_c) / T, rel=1e-9, abs=1e-9)
@@ -76,6 +77,7 @@ def environment(generator, theta):
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.35, 1.0, 2.6])
+@pytest.mark.always("0.0", "1.0")
 def test_no_passive_environment_asks_for_more_than_the_device_has(delay):
     """The coupler and what hangs on it as one law H(z), by Colgate and Schenkel's condition: another way to the claim."""
     generator, theta = np.random.default_rng(2), np.linspace(0.01, np.pi, 200)

@@ -259,6 +259,7 @@ def with_motor(stands, **changes):
 
 
 @pytest.mark.parametrize("stiffness", [150.0, 500.0, 1000.0])
+@pytest.mark.always("500.0")
 def test_a_board_is_moved_gently_whatever_the_wall(stiffness):
     """Stable below 2 b/T = 1200 N/m. The motor stands for 2 N: it holds 5 mm, or K depth = 1 N, and is led there."""
     board, logs = with_motor(2.0)

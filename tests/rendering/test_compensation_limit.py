@@ -57,6 +57,7 @@ def test_about_a_spring_it_is_where_a_pole_leaves_the_circle(hand, delay, tau):
 @quick
 @pytest.mark.parametrize("delay", [0.0, 3.5e-3])
 @pytest.mark.parametrize("velocity", [None, hl.velocity.filtered(tau=5e-3), hl.velocity.kalman(acceleration=2, noise=1e-5)])
+@pytest.mark.always("None-*", "velocity1-0.0035")
 def test_a_free_handle_drifts_off_at_one_whatever_the_lag(velocity, delay):
     limit = compensation_limit(paddle(delay=delay), velocity=velocity)
     assert (limit.viscous, limit.frequency) == (1.0, 0.0)

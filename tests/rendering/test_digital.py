@@ -49,6 +49,7 @@ def test_the_sampled_loop_has_the_poles_of_handle_hand_and_wall(B):
 
 @pytest.mark.parametrize("delay", [0.0, 2e-3, 2.6e-3])
 @pytest.mark.parametrize("velocity", [None, "model"])
+@pytest.mark.always("None-0.002", "model-0.0026")
 def test_under_a_delay_the_handle_keeps_the_wall_s_own_rhythm(delay, velocity):
     """Deep inside the wall, the samples obey the characteristic equation of the unsampled wall, delay or none."""
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, delay=delay, hand=HAND)
@@ -100,6 +101,7 @@ def test_a_chosen_velocity_and_a_limit_are_obeyed():
 
 
 @pytest.mark.parametrize("make", [hl.laws.digital_wall, hl.laws.predictive_wall, hl.laws.deadbeat_wall])
+@pytest.mark.always("digital_wall", "predictive_wall")
 def test_at_another_period_there_is_no_force_but_a_fault(make):
     scene = make(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=500.0)
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1.1e-3).run(scene, duration=0.02, x=1e-3, progress=False)

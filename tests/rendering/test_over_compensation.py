@@ -17,6 +17,7 @@ def paddle(**changes):
 
 @pytest.mark.parametrize("viscous", [0.0, 0.5])
 @pytest.mark.parametrize("delay", [0.0, 2.5e-3])
+@pytest.mark.always("*-0.5")
 def test_a_free_handle_goes_on_where_its_steady_speed_leaves_the_dead_zone(viscous, delay):
     """(dry - 1) coulomb/(damping left) = speed; three times divided by 32 a range of 1 is known to 3e-5."""
     found = over_compensation(paddle(delay=delay), speed=0.002, viscous=viscous)

@@ -147,14 +147,14 @@ SOME = (*FEW, *own_scenes())
 
 
 def test_data_give_what_the_picture_draws():
-    hold_data_to_pictures(SOME, 10)
+    hold_data_to_pictures(SOME, 5)
     for name in ("four_bar", "rolling", "own drawing"):  # not the same items each time
-        assert len({len(items) for items in case(name, 10)[2]}) > 1, name
+        assert len({len(items) for items in case(name, 5)[2]}) > 1, name
 
 
 @needs_node
 def test_a_page_draws_what_the_picture_draws():
-    hold_page_to_pictures(SOME, 10)
+    hold_page_to_pictures(SOME, 5)
 
 
 @pytest.mark.wide

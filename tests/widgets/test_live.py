@@ -307,6 +307,7 @@ DAMPER = hl.Scene(force=hl.parameters("b", units="N*s/m", values=0.5) * hl.v(hl.
 
 
 @pytest.mark.parametrize("scene", [hl.library.pendulum_on_the_handle(), hl.library.mass_spring_damper(), DAMPER])
+@pytest.mark.always("scene[12]")
 def test_nothing_is_said_to_be_touched_where_nothing_can_be(scene):
     stage = Stage(scene=scene).open()
     frames = stage.go(0.5, pointer=lead)

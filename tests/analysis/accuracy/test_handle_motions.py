@@ -13,7 +13,7 @@ MOTIONS = {motion.name: motion for motion in handle_motions()}
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-@pytest.mark.always("quick sinusoid", "push", "drift")
+@pytest.mark.always("push", "drift")
 def test_derivatives_are_those_of_sympy(name):
     motion = MOTIONS[name]
     times = np.array([0.0371, 0.2113, 0.5571, 0.7317, 0.93]) * motion.duration

@@ -46,6 +46,7 @@ def test_lanes_of_many_structures():
 
 
 @pytest.mark.parametrize("law", ["zoh", "half_sample"])
+@pytest.mark.always("half_sample")
 def test_another_period_by_similarity(law):
     """Masses by T squared, dampers by T: sample for sample the motion of a paddle of that period, in its own program."""
     pytest.importorskip("llvmlite")  # friction, over many lanes

@@ -59,7 +59,7 @@ def program_of(plan, points):
 
 @pytest.mark.parametrize("axes", [AXES, MORE], ids=["AXES", "MORE"])
 @pytest.mark.parametrize("hand", HANDS.values(), ids=HANDS)
-@pytest.mark.always("holding-*")
+@pytest.mark.always("holding-MORE")
 def test_every_point_has_the_parameters_of_its_own_paddle(axes, hand):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hand, counts_per_metre=1e4, force_max=5.0)
     plan = plan_of(paddle, axes)
@@ -105,6 +105,7 @@ def test_values_out_of_range_are_found_at_either_end_of_an_axis():
 
 
 @pytest.mark.parametrize("axes", [{"k": 10**6}, {"m": 1000, "b": 1000}, {"delay": 1000, "k": 1000}], ids=str)
+@pytest.mark.always("{'k'*", "{'m'*")
 def test_a_chunk_of_a_million_points_is_small_and_so_is_what_lays_them_out(axes):
     values = {name: np.linspace(*{"delay": (0, 3e-3)}.get(name, (1, 2)), n) for name, n in axes.items()}
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, noise=1e-5)

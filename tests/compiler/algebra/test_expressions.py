@@ -27,6 +27,7 @@ FUNCTIONS = [
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=str)
+@pytest.mark.always("sin(*", "exp(*", "log(*", "tanh(*", "acos(*", "atan2(-*", "sign(*", "floor(*", "Max(*", "x(n)*")
 def test_a_function_has_the_value_mpmath_gives(function):
     points = np.array([-0.97, -0.41, -1e-9, 0.0, 0.1, 0.25, 0.61, 0.99])
     program = hl.compile(hl.Scene(force=F * function), T=1e-3, dtype="float64")

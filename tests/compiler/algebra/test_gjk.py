@@ -179,6 +179,7 @@ def test_a_third_way_agrees():
 
 
 @pytest.mark.parametrize(("corners", "cheapest"), [(4, "faces"), (8, "faces"), (16, "gjk")])
+@pytest.mark.always("[48]-*")
 def test_what_they_cost(corners, cheapest):
     generator = np.random.default_rng(16)
     A, B = convex(generator, corners), convex(generator, corners)

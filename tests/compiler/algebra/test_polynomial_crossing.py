@@ -144,6 +144,7 @@ def test_a_start_known_to_be_a_root_is_divided_out():
 
 
 @pytest.mark.parametrize("order", [1, 2, 8])
+@pytest.mark.always("[12]")
 def test_traced_and_computed_are_the_same_bits(order):
     b = Builder("f64")
     place, found = first_crossing([b.leaf("input", k, "f64") for k in range(order + 1)])

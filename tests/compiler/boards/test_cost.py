@@ -207,7 +207,7 @@ def test_a_double_pendulum_is_refused_with_its_share_and_every_offer_fits():
 
 @pytest.mark.parametrize("promise", [False, True])
 @pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
-@pytest.mark.always("wall-*", "mass_and_wall-True", "cart_pole-False")
+@pytest.mark.always("wall-*", "mass_and_wall-True")
 def test_what_a_refusal_names_fits_and_nothing_else_is_refused(make, promise):
     scene, options = make()
     for T in (1e-3, 2e-3):

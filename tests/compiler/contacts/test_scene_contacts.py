@@ -72,6 +72,7 @@ def penetration(law_force, until):
 
 
 @pytest.mark.parametrize("method, tolerance", [("taylor", 1e-9), ("rk4", 2e-3)])
+@pytest.mark.always("rk4-*")
 def test_a_penalty_floor_gives_back_what_its_integration_does(method, tolerance):
     """Spring and damper, the damper's jump at touch and the end of the push located; rk4 keeps to its order."""
     k, b = hl.parameters("k b", units="N/m N*s/m", values=(3000, 4))
@@ -85,6 +86,7 @@ def test_a_penalty_floor_gives_back_what_its_integration_does(method, tolerance)
 
 
 @pytest.mark.parametrize("exponent, unit", [(2, "N/m^2"), (1.5, "N/m^1.5")])
+@pytest.mark.always("1.5-*")
 def test_hunt_crossley_rebounds_with_its_restitution(exponent, unit):
     """Thrown at a wall without weight at c v = 0.42: e is the closed form's, to the fourth order of the method."""
     k, c, u = hl.parameters("k_h c u", units=f"{unit} s/m m/s", values=(1e5, 0.3, 1.4))

@@ -245,6 +245,7 @@ def test_a_resting_body_leaves_a_plate_that_falls_faster_than_it():
 
 
 @pytest.mark.parametrize("order", ["sequential", "simultaneous"])
+@pytest.mark.always("simultaneous")
 def test_the_energy_books_of_impacts_close(order):
     """Energy at the start = energy now + what impacts lost, at every tick, through bounces, blows and rest."""
     m = [0.3, 0.1]

@@ -110,6 +110,7 @@ def test_the_reduction_constants_are_exact_to_the_last_piece(type):
 
 @pytest.mark.parametrize("type", TYPES)
 @pytest.mark.parametrize("name", ELEMENTARY)
+@pytest.mark.always("sin-*", "exp-f32", "log-f64", "atan-f32", "tanh-f64")
 def test_the_error_is_within_one_and_a_half_units_in_the_last_place(name, type):
     # measured on 35 times as many operands: at most 1.45 in either type
     assert ulp_error(name, type, operands(name, type, 700)) < 1.5

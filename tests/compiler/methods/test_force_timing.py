@@ -32,6 +32,7 @@ def ran(scene, method, force_at, **options):
 
 
 @pytest.mark.parametrize("method", [*sorted(set(METHODS) - {"nystrom4"}), "taylor", "exact"])
+@pytest.mark.always("euler", "rk4", "verlet", "taylor", "exact")
 def test_after_is_the_force_of_the_next_states_with_this_sample(method):
     out = ran(BODY, method, "after")
     at_the_end = K_ * (X[:-1] - out[1:, 1]) + B_ * (V[:-1] - out[1:, 2])
@@ -162,6 +163,7 @@ def test_a_micro_impulse_has_no_mean():
 
 
 @pytest.mark.parametrize("force_at", ["after", "mean"])
+@pytest.mark.always("mean")
 def test_the_modes_of_a_chain_are_put_together_for_it(force_at):
     """exact advances a long chain by its modes where that is cheaper; RK4 in sixteen steps a period finds the same force."""
     places = [hl.coordinate(f"z{k}", unit="m") for k in range(4)]

@@ -105,6 +105,7 @@ def test_what_grows_slowly_is_noted_and_limited_to_slow_growth():
 
 
 @pytest.mark.parametrize("name", ["mass_spring_damper", "rolling", "pendulum_on_the_handle", "gears", "two_masses"])
+@pytest.mark.always("mass_spring_damper", "gears")
 def test_the_margin_is_that_of_step_limit(name):
     """Of the same motion at the same places, the start and where all hangs straight, implicit damping included."""
     scene = getattr(hl.library, name)()

@@ -78,7 +78,7 @@ def follow(path, flight, T=1e-3, seconds=2.0, seed=None, run=True, scene=None):
 
 @pytest.mark.parametrize("flight", [0.0, 50e-6, 100e-6, 200e-6])
 @pytest.mark.parametrize("T", [0.25e-3, 1e-3])
-@pytest.mark.always("0.001-0.0", "0.001-0.0002", "0.00025-0.0002")
+@pytest.mark.always("0.001-0.0002")
 def test_a_reading_in_flight_neither_stops_the_motor_nor_loses_the_position(T, flight):
     """It did: of these runs at 50 to 200 us every one ended in OVER_SPEED. Readings lie anywhere between the ends."""
     for seed in (None, 1, 2):
@@ -146,6 +146,7 @@ def test_a_jump_that_stays_is_over_speed():
 
 
 @pytest.mark.parametrize("T", [1e-3, 2e-3])
+@pytest.mark.always("0.001")
 def test_a_contact_that_fails_in_a_tenth_of_the_readings_ends_the_run_and_loses_the_position(T):
     """The run ended, but the board took the position for known after it, a turn away: in 30 of 150 runs at 2 ms."""
     lasted = []
@@ -209,7 +210,7 @@ def test_small_forces_and_a_handle_at_a_stop_may_stay(F, at):
 
 @pytest.mark.parametrize("stiffness", [20.0, 500.0, pytest.param(10_000.0, marks=pytest.mark.wide)])
 @pytest.mark.parametrize("counts_per_metre", [2e4, 78125])
-@pytest.mark.always("20000.0-20.0", "78125-500.0")
+@pytest.mark.always("78125-500.0")
 def test_a_hand_that_holds_still_is_no_frozen_sensor(stiffness, counts_per_metre):
     """No tremor, no noise: the hand gives way by counts as the force fades, and has it back."""
     k, x_o = hl.parameters("k x_o", units="N/m m")

@@ -269,6 +269,7 @@ class TestForce:
 
     @pytest.mark.parametrize("truth", [5.0, 8.0, 12.5])
     @pytest.mark.parametrize("law", ["LINEAR", "SQRT"])
+    @pytest.mark.always("LINEAR-5.0", "SQRT-12.5")
     def test_a_scale_tells_constant_and_law(self, truth, law):
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=truth, motor_law=MOTOR_LAWS[law])
         person = bench.Scripted(paddle, HOMING | YES | on_a_scale())

@@ -71,6 +71,7 @@ def test_the_same_wiring_keeps_its_calibration():
 
 
 @pytest.mark.parametrize("answer", ["Is every wire where", "Look again"])
+@pytest.mark.always("Is every*")
 def test_what_the_person_does_not_confirm_leaves_the_motor_off(answer):
     """A wiring that was confirmed before counts no more either."""
     broken = (lambda counts: 0) if answer == "Look again" else None
@@ -98,6 +99,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("case", WRONG)
+@pytest.mark.always("one line", "a floating input")
 def test_a_wrong_wire_is_named(case):
     store, sensor, words = WRONG[case]
     own = BUILT if store is LONGHORN else {}

@@ -320,6 +320,9 @@ SLOW = {
 
 
 @pytest.mark.parametrize("kind", SLOW)
+@pytest.mark.always(
+    "blanks", "names", "an expression", "open *", "lines in a bracket", "texts of many lines", "backslashes", "questions"
+)
 def test_a_long_script_is_taken_apart(kind):
     """In seconds; where the time grows with the square of the length, it takes minutes to hours."""
     assert "".join(statements(SLOW[kind])) in (SLOW[kind], "")

@@ -58,5 +58,6 @@ def test_one_interpreter_answers_for_all_and_its_start_is_not_charged():
 
 
 @pytest.mark.parametrize(("name", "seconds", "reason"), [("flood", 60, "flood"), ("hang", 0.5, "time")])
+@pytest.mark.always("hang-*")
 def test_how_it_ended(name, seconds, reason):
     assert ended(loaded(), name, seconds) == reason

@@ -43,6 +43,7 @@ def forces(scene, **options):
 @pytest.mark.parametrize("clamp", [False, True])
 @pytest.mark.parametrize("unilateral", UNILATERAL)
 @pytest.mark.parametrize("law", TAPS)
+@pytest.mark.always("zoh-gate-*", "half_sample-None-*", "backward_difference-gate-*", "ellis-clip-*")
 def test_a_wall_is_its_formula(law, unilateral, clamp):
     scene = hl.wall(law, unilateral=unilateral, clamp=clamp)(k=K, B=B, x_o=BOUNDARY)
     expected = by_formula(law, unilateral, clamp)
@@ -115,7 +116,7 @@ def scenes_to_filter():
 
 @pytest.mark.parametrize("clamp", [False, True])
 @pytest.mark.parametrize("name", scenes_to_filter())
-@pytest.mark.always("*-True", "gated-False", "with a memory-False")
+@pytest.mark.always("gated-False", "with a memory-True", "braked-True")
 def test_the_filter_filters_whatever_is_felt(name, clamp):
     """Around switches, powers, memories and estimates it is the formula on the record of the force alone."""
     scene = scenes_to_filter()[name]
@@ -146,6 +147,7 @@ def test_a_filter_of_a_filter_is_the_product():
 
 
 @pytest.mark.parametrize("name", scenes_to_filter())
+@pytest.mark.always("gated", "with a memory", "estimated")
 def test_a_filtered_scene_runs_in_the_firmware_core(name):
     program = hl.compile(hl.laws.force_filter(scenes_to_filter()[name]), T=T)
     path = MOTION.astype(np.float32)[:, None]

@@ -24,6 +24,7 @@ def entry(log):
 
 @pytest.mark.parametrize("periods", [1, 2, 5])
 @pytest.mark.parametrize("part", [0.3, 1.0])
+@pytest.mark.always("0.3-1", "1.0-5")
 def test_a_pulse_takes_its_part_of_the_momentum(part, periods):
     log = run(hl.laws.braking_pulse(OPEN, part=part, mass=M, periods=periods))
     at = entry(log)

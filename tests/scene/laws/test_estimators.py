@@ -91,6 +91,7 @@ def test_the_filter_is_the_backward_mapping_of_its_differential_equation(tau):
 
 
 @pytest.mark.parametrize("most", [1, 2, 3, 8])
+@pytest.mark.always("[123]")
 def test_a_window_by_end_fit_is_the_published_loop(most):
     """The cones that narrow sample by sample choose the windows that the loop over all pairs chooses."""
     expected = windows_one_after_the_other(PATH, BAND, most, end_line)

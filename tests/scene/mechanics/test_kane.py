@@ -140,6 +140,7 @@ STARTS = [0.2, 0.3, 0.1, 0.4, 12.0, -0.5]
 
 
 @pytest.mark.parametrize("auxiliary", [False, True])
+@pytest.mark.always("True")
 def test_rolling_disc(auxiliary):
     kane, values = disc(auxiliary)
     mech = compare(kane, values, STARTS, 0.005, 0.1, 1e-6)

@@ -15,6 +15,7 @@ PADDLE = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3, hand=hl.Hand("pinch"))
 @pytest.mark.parametrize(
     "scene", [hl.library.four_bar(), hl.library.texture(), hl.wall()(k=300, x_o=0.01)], ids=lambda scene: scene.name
 )
+@pytest.mark.always("texture", "zoh wall")
 def test_a_still_picture_has_the_places_of_the_first_picture(scene):
     stage = Stage(PADDLE, scene, clock=lambda: 0.0)
     items, box = stage.drawn(None), stage.picture.box
