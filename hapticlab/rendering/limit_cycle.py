@@ -67,7 +67,7 @@ def limit_cycle(
 ) -> LimitCycle:
     """Predict amplitude and frequency at which over-compensated friction keeps a held handle moving.
 
-    Harmonic balance (Gelb and Vander Velde 1968); Putra, van de Wouw and Nijmeijer (2007) study these cycles. In x' = V
+    Harmonic balance (Gelb and Vander Velde 1968); Putra, van de Wouw and Nijmeijer (2007, not at hand) study them. In x' = V
     cos(w t) the friction is 4 coulomb/pi in phase with the velocity, and the compensation viscous b V' + dry coulomb N V'
     acts on the estimated velocity V', later by its lag, the delay and half a period of hold; of the dead zone N V' = (4/pi)
     sqrt(1 - (speed/V')^2). Real and imaginary parts of j (M w - k/w) V + b V + 4 coulomb/pi = (what the compensation gives)
