@@ -1,7 +1,10 @@
 """Scenes and programs the device tests run, and the board they run on."""
 
+from types import SimpleNamespace
+
 import pytest
 from bad_line import lossy_port
+from serial.urlhandler import protocol_socket
 
 from hapticlab.compiler.ir.program import Channel, Program
 from hapticlab.compiler.ir.trace import Builder, equal, select
@@ -9,6 +12,14 @@ from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
+
+
+@pytest.fixture(autouse=True, scope="session")
+def sockets_close_at_once():
+    """Pyserial sleeps 0.3 s after each, for a server that would not be ready for the next connection: here each has its own."""
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(protocol_socket, "time", SimpleNamespace(sleep=lambda _: None))
+        yield
 
 
 @pytest.fixture

@@ -49,7 +49,7 @@ class HostBoard:
     def transmit(self):
         """Return the bytes that the board has to say."""
         count = self._library.hl_host_transmit(self._board, self._room, len(self._room))
-        return self._room.raw[:count]
+        return self._room[:count]  # not .raw, which copies all of it
 
     def tick(self, counts, now, step=0.0):
         """Run one tick at ``now`` [s] with the handle at ``counts``, which takes ``step`` [s]; return the duty, -1 ... 1."""

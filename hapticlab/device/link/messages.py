@@ -24,6 +24,7 @@ A change of what a message means needs another name of a field at least, so that
 import struct
 import zlib
 from dataclasses import dataclass
+from functools import cached_property
 
 from ...compiler.engines.bytecode import RESULTS as MACHINE_RESULTS
 from ...compiler.engines.bytecode import table_hash as machine_hash
@@ -44,16 +45,20 @@ class Message:
     guarded: bool = False
     open: bool = False
 
-    @property
+    @cached_property
     def struct(self):
         return struct.Struct("<" + "".join(type for type, _ in self.fields))
+
+    @cached_property
+    def names(self):
+        return tuple(name for _, name in self.fields)
 
     def unpack(self, payload):
         """Return the fields by name; bytes after them are under "rest"."""
         known = self.struct
         if len(payload) < known.size or (len(payload) > known.size and not self.open):
             raise ValueError(f"{len(payload)} bytes for fields of {known.size}")
-        values = dict(zip((name for _, name in self.fields), known.unpack_from(payload), strict=True))
+        values = dict(zip(self.names, known.unpack_from(payload), strict=True))
         return values | ({"rest": payload[known.size :]} if self.open else {})
 
 

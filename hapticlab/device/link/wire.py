@@ -75,14 +75,14 @@ def stuff(data):
 
 def unstuff(data):
     """Undo :func:`stuff`; None where data is not of it."""
-    runs, at = [], 0
-    while at < len(data):
-        step = data[at]
-        if step == 0 or at + step > len(data):
+    body, at = bytearray(data), 0
+    while at < len(body):
+        step = body[at]
+        if step == 0:
             return None
-        runs.append(data[at + 1 : at + step])
+        body[at] = 0  # each length stands where a zero was, the first before them all
         at += step
-    return b"\0".join(runs)
+    return bytes(body[1:]) if at == len(body) else None
 
 
 class Decoder:

@@ -73,7 +73,7 @@ class Handle:
         per_metre = self.paddle.counts_per_metre
         if per_metre is None:
             return None
-        return int(np.floor(self.seen * per_metre + (0.5 if self.paddle.rounding == "nearest" else 0.0)))
+        return math.floor(self.seen * per_metre + (0.5 if self.paddle.rounding == "nearest" else 0.0))
 
     def step(self, F):
         """Advance one period in which the force on the environment F [N] is computed at its begin."""

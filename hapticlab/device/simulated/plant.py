@@ -8,6 +8,7 @@ program serves every mass, damping and period, and lanes may sweep them.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import accumulate
 
 import numpy as np
@@ -131,7 +132,7 @@ class Plant:
         return (x_switch if self.seen == AT else x_seen), x_switch, x, v
 
     def _glide(self, p, part, x, v, u, d):
-        phi = {e: p.get(f"plant.phi_{e}{part}") for e in PHI}
+        phi = dict(zip(PHI, map(p.get, _names_of_phi(part)), strict=True))
         moved = x * phi["xx"] if self.spring else x
         x_next = moved + (phi["xv"] * v + phi["xu"] * u)
         v_next = phi["vv"] * v + phi["vu"] * u
@@ -148,6 +149,11 @@ class Plant:
             x, v = friction.slide(piece, x, v, u, d)
             u = u if d is None else u + d * piece.h
         return x, v
+
+
+@cache
+def _names_of_phi(part):
+    return [f"plant.phi_{entry}{part}" for entry in PHI]
 
 
 def plant_of(paddle):
