@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from builder.examples import run
 from matplotlib.image import imread
 
 import hapticlab as hl
@@ -43,23 +44,20 @@ COMMANDS = "".join(blocks("sh", "README.md", *MANUAL)).splitlines()
 
 
 def run_page(path):
-    """The names that the examples of a page define."""
-    names = {}
-    for block in blocks("python", path):
-        exec(compile(block, path, "exec"), names)
-    return names
+    """A page whose examples ran, by what runs them for the site."""
+    return run((ROOT / path).read_text("utf-8"), path)
 
 
 def test_readme_python_runs(capsys):
-    names = run_page("README.md")
-    printed = capsys.readouterr().out
+    page = run_page("README.md")
+    printed = page.printed
     assert printed.startswith("growing") and "9.479 contacts/s" in printed
     assert "\n200 N/m" in printed  # 2 b/T of this paddle, Eq. (23.10)
     assert "\n200.067 N/m" in printed  # its eigenvalues: 2 b/T (1 + b T/(6 m)), within 1e-6
     (example,) = blocks("python", "README.md")
     soft = example.replace("k=500", "k=150")  # "Change k to 150: the oscillation dies out."
     assert soft != example
-    exec(compile(soft, "README.md", "exec"), names)
+    exec(compile(soft, "README.md", "exec"), page.names)
     assert capsys.readouterr().out.startswith("decaying")
 
 
@@ -75,12 +73,12 @@ def test_the_picture_of_readme_is_that_of_its_example(tmp_path):
     assert script.PICTURE.stat().st_size < 60_000
 
 
-def test_scenes_run(capsys):
-    names = run_page("docs/how_to/scenes.md")
+def test_scenes_run():
+    page = run_page("docs/how_to/scenes.md")
+    names, printed = page.names, page.printed
     assert names["log"].x.shape == (20_000,)
     assert names["grid"].values.shape == (200, 3)
     assert names["program"].outputs[0].name == "F"
-    printed = capsys.readouterr().out
     assert "200 N/m" in printed  # 2 b/T of this paddle, Eq. (23.10)
     assert "200.067 N/m" in printed  # its eigenvalues: 2 b/T (1 + b T/(6 m)), within 1e-6
     assert abs(hl.records.balance(names["bounced"]).leak).max() < 1e-6  # J of 20 mJ: the handle is known at samples only
@@ -89,27 +87,24 @@ def test_scenes_run(capsys):
     assert "theta  state" in printed  # what the pendulum requires
 
 
-def test_boards_run(capsys):
-    names = run_page("docs/paddle/boards.md")
+def test_boards_run():
+    page = run_page("docs/paddle/boards.md")
     # 2 N over 10 mm and on into 150 N/m: without damping 75 d^2 = 2 (0.01 + d), so 150 d = 5.16 N
-    assert "at most 5.1 N" in capsys.readouterr().out
-    assert names["felt"].F.max() > 0
+    assert "at most 5.1 N" in page.printed
+    assert page.names["felt"].F.max() > 0
 
 
 @pytest.mark.parametrize(
     "path", [path for path in PAGES_THAT_RUN if path not in ("README.md", "docs/how_to/scenes.md", "docs/paddle/boards.md", LONG)]
 )
 @pytest.mark.always("docs/*/[!m]*")  # methods.md tries 396 settings, which takes two seconds
-def test_pages_run(path, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)  # a page may write files
-    run_page(path)
-    assert capsys.readouterr().out
+def test_pages_run(path):
+    assert run_page(path).printed
 
 
 @pytest.mark.machine_code
-def test_a_long_page_runs(capsys):
-    run_page(LONG)
-    assert capsys.readouterr().out
+def test_a_long_page_runs():
+    assert run_page(LONG).printed
 
 
 def test_pages_have_lines_that_fit_and_look_before_they_pull():
@@ -128,7 +123,8 @@ def test_readme_is_two_screens():
 def test_the_index_lists_every_page():
     index = (ROOT / "docs" / "README.md").read_text("utf-8")
     docs = ROOT / "docs"
-    pages = {path.relative_to(docs).as_posix() for path in docs.rglob("*.md")} - {"README.md", "index.md"}
+    pages = {path.relative_to(docs).as_posix() for path in docs.rglob("*.md")} - {"README.md"}
+    pages = {page for page in pages if not page.endswith("index.md")}
     pages -= {page for page in pages if page.startswith("papers/") and page != "papers/README.md"}  # listed there
     assert sorted(re.findall(r"^\| \[([\w./]+)\]\(\1\) \|", index, re.M)) == sorted(pages)
 

@@ -58,8 +58,8 @@ def test_the_quick_start_grades_and_writes_pages(here, tmp_path, monkeypatch, ca
 @pytest.fixture
 def own_lab(tmp_path, monkeypatch):
     """The small lab of the page, written to where the page says; the folder of the lab."""
-    files = dict(re.findall(r"^`((?:mine|answers)/[^`]*)`[^\n]*\n\n```python\n(.*?)^```", PAGE, re.M | re.S))
-    assert len(files) == len(re.findall("^```python", PAGE, re.M)) == 4
+    files = dict(re.findall(r"^`((?:mine|answers)/[^`]*)`[^\n]*\n\n```py\n(.*?)^```", PAGE, re.M | re.S))
+    assert len(files) == len(re.findall("^```py$", PAGE, re.M)) == 4
     for name, text in files.items():
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
