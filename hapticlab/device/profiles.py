@@ -21,6 +21,8 @@ from .variants import VARIANTS
 
 if TYPE_CHECKING:
     from ..base.annotations import File
+    from .board.serial_paddle import SerialPaddle
+    from .simulated.simulated_paddle import SimulatedPaddle
 
 
 #: what no source of a Hapkit or of a paddle like it gives: the supply, the winding and the rotor are round numbers, and the
@@ -197,6 +199,12 @@ def kind_named(name: str) -> PaddleProfile | None:
     if kind in PROFILES and variant in VARIANTS:
         return VARIANTS[variant](PROFILES[kind])
     return PROFILES.get(name)
+
+
+def profile_of(paddle: SimulatedPaddle | SerialPaddle) -> PaddleProfile | None:
+    """Return the profile of a board's calibration, or that which a simulated paddle was made of; None where it has none."""
+    settings = getattr(paddle, "settings", None)
+    return settings.profile(paddle.T) if settings is not None else getattr(paddle, "profile", None)
 
 
 def _from_file(path):

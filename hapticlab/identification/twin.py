@@ -12,6 +12,7 @@ from ..base.profile.constants import CONSTANTS, in_range, unit_of
 from ..base.profile.estimate import Estimate
 from ..base.profile.paddle_profile import PaddleProfile
 from ..device.profiles import profile as named_profile
+from ..device.profiles import profile_of
 from ..errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -134,8 +135,7 @@ def _base(given):
         return None
     if not hasattr(given, "run"):
         return named_profile(given)
-    settings = getattr(given, "settings", None)
-    profile = settings.profile(given.T) if settings is not None else getattr(given, "profile", None)
+    profile = profile_of(given)
     if profile is None:
         raise AnalysisError(
             "hl.identify.twin: the paddle given as base= has no profile, or its board no calibration. Give a profile, such as "

@@ -13,6 +13,7 @@ from ...base.arguments import what_is
 from ...base.profile.estimate import Estimate
 from ...base.profile.paddle_profile import PaddleProfile
 from ...base.profile.profile_file import parsed
+from ...device.profiles import profile_of
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError, PaddleError
 from ...rendering.velocity_errors import VelocityErrors
@@ -113,8 +114,7 @@ def paddle_quality(
 
 
 def _profile_of(paddle):
-    settings = getattr(paddle, "settings", None)
-    profile = settings.profile(paddle.T) if settings is not None else getattr(paddle, "profile", None)
+    profile = profile_of(paddle)
     if profile is None:
         raise PaddleError(
             "hl.measure.quality: the paddle has no profile, so its constants are not known. Give its twin, or the profile that "
