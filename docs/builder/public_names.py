@@ -1,0 +1,108 @@
+"""The public names: what each is, which members it has, and the addresses of all of them and of their arguments."""
+
+import inspect
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+
+import sympy as sp
+
+from hapticlab.vocabulary import PAGES
+
+#: ``hl`` itself, and every page of names in it
+NAMESPACES = ("hl", *PAGES)
+
+
+@dataclass(frozen=True)
+class Name:
+    """One public name: where a user finds it, and what it stands for."""
+
+    namespace: str
+    short: str
+    value: object
+
+    @property
+    def path(self):
+        """As it is imported: ``hapticlab.design.coupler``; also its target in Sphinx."""
+        return ".".join(["hapticlab", *([] if self.namespace == "hl" else [self.namespace]), self.short])
+
+    @property
+    def typed(self):
+        """As a user types it: ``hl.design.coupler``."""
+        return self.path.replace("hapticlab", "hl", 1)
+
+    @property
+    def is_class(self):
+        """Whether it is a class that a page shows with its members; a class of SymPy's is written like a function."""
+        return inspect.isclass(self.value)
+
+    @property
+    def is_object(self):
+        """Whether it is neither class nor function, but a record or a symbol."""
+        return not (self.is_class or inspect.isroutine(self.value))
+
+    @property
+    def document(self):
+        """The page of the name in the documents, without its ending; no two differ by capitals alone, as some disks ask."""
+        rivals = [one for one in names_of(self.namespace) if one.lower() == self.short.lower()]
+        capital = "capital_" if len(rivals) > 1 and not self.short.islower() else ""
+        return f"reference/{self.namespace}/{capital}{self.short}"
+
+    @property
+    def doc(self):
+        """Its own docstring; nothing for an object that has only that of its class."""
+        said = inspect.getdoc(self.value) or ""
+        return "" if self.is_object and said == inspect.getdoc(type(self.value)) else said
+
+    @property
+    def first_line(self):
+        """The first line of its docstring, or of what its class is."""
+        return (self.doc or f"A {type(self.value).__name__}").partition("\n")[0]
+
+    @cached_property
+    def members(self):
+        """Methods and properties of a class that are hapticlab's own, by name; private ones and SymPy's hooks are left out."""
+        if not self.is_class or issubclass(self.value, sp.Basic | sp.core.function.FunctionClass):
+            return {}
+        found = {name: inspect.getattr_static(self.value, name) for name in dir(self.value) if not name.startswith("_")}
+        return {name: member for name, member in found.items() if _is_documented(member)}
+
+
+def _is_documented(member):
+    function = member.fget if isinstance(member, property) else getattr(member, "func", None) or inspect.unwrap(_plain(member))
+    return inspect.isfunction(function) and (function.__module__ or "").startswith("hapticlab")
+
+
+def _plain(member):
+    return member.__func__ if isinstance(member, classmethod | staticmethod) else member
+
+
+def module_of(namespace):
+    """The module of a namespace."""
+    return import_module("hapticlab" if namespace == "hl" else f"hapticlab.{namespace}")
+
+
+def names_of(namespace):
+    """The short names of a namespace, without the pages in ``hl`` itself."""
+    return [name for name in module_of(namespace).__all__ if namespace != "hl" or name not in PAGES]
+
+
+def own_names():
+    """Yield every public name, once; what stands in ``hl`` and on a page is that of ``hl``."""
+    seen = set()
+    for namespace in NAMESPACES:
+        for short in names_of(namespace):
+            name = Name(namespace, short, getattr(module_of(namespace), short))
+            if namespace == "hl" or id(name.value) not in seen:
+                yield name
+            if namespace == "hl":
+                seen.add(id(name.value))
+
+
+def callables(name):
+    """Yield ``(path, function or class)`` of a name and its methods: all that take arguments."""
+    if not name.is_object:
+        yield name.path, name.value
+    for short, member in name.members.items():
+        if not isinstance(member, property) and inspect.isroutine(_plain(member)):
+            yield f"{name.path}.{short}", _plain(member)
