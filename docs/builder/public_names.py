@@ -73,6 +73,11 @@ def _is_documented(member):
     return inspect.isfunction(function) and (function.__module__ or "").startswith("hapticlab")
 
 
+def is_property(member):
+    """Whether a member of a class is read, not called."""
+    return isinstance(member, property | cached_property)
+
+
 def _plain(member):
     return member.__func__ if isinstance(member, classmethod | staticmethod) else member
 
@@ -104,5 +109,5 @@ def callables(name):
     if not name.is_object:
         yield name.path, name.value
     for short, member in name.members.items():
-        if not isinstance(member, property) and inspect.isroutine(_plain(member)):
+        if not is_property(member):
             yield f"{name.path}.{short}", _plain(member)

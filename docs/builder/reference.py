@@ -1,9 +1,7 @@
 """The reference: a page for every namespace and one for every public name, at the path by which a user finds it."""
 
-import inspect
-
 from . import uses
-from .public_names import NAMESPACES, PAGES, Name, module_of, names_of, own_names
+from .public_names import NAMESPACES, PAGES, Name, is_property, module_of, names_of, own_names
 
 BLOCK = "```{{eval-rst}}\n{}\n```\n"
 #: a constant that prints no more than this says nothing that its page does not say
@@ -100,8 +98,7 @@ def _described(name):
         return
     yield f".. auto{'class' if name.is_class else 'function'}:: {name.path}"
     for short, member in name.members.items():
-        routine = inspect.isroutine(member) or isinstance(member, classmethod | staticmethod)
-        yield from ["", f"   .. auto{'method' if routine else 'property'}:: {name.path}.{short}"]
+        yield from ["", f"   .. auto{'property' if is_property(member) else 'method'}:: {name.path}.{short}"]
 
 
 def _equations(name):

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from .public_names import NAMESPACES, Name, module_of, names_of
+from .public_names import NAMESPACES, Name, module_of, names_of, own_names
 
 ROOT = Path(__file__).parents[2]
 _DOTTED = re.compile(r"\bhl\.(\w+)(?:\.(\w+))?")
 _IMPORTED = re.compile(r"^ *from (hapticlab[\w.]*) import \(?([\w\s,]+)", re.M)
-EQUATION, FIGURE = re.compile(r"\(23\.(\d+)\)"), re.compile(r"Figs?\.? 23\.(\d+)|Figure 23\.(\d+)")
+#: in a text, or in the name of a test
+EQUATION = re.compile(r"\(23\.(\d+)\)|(?<!fig)_23_(\d+)")
+FIGURE = re.compile(r"Fig(?:s?\.|ure) 23\.(\d+)|fig_23_(\d+)")
 #: folders of docs/ whose pages are looked through
 FOLDERS = ("tutorial", "how_to", "explanation", "teaching", "paddle", "extending", "project")
 
@@ -34,7 +36,7 @@ class Text:
     @property
     def equations(self):
         """The numbers of the chapter's equations that it names."""
-        return {int(number) for number in EQUATION.findall(self.text)}
+        return {int(one or other) for one, other in EQUATION.findall(self.text)}
 
     @property
     def figures(self):
@@ -55,7 +57,7 @@ def _names(text):
 @cache
 def texts():
     """Return every text, labs first."""
-    return (*_labs(), *_pages(), *_tests())
+    return (*_labs(), *_pages(), *_files("tests", "tests/**/test_*.py"))
 
 
 def _labs():
@@ -80,17 +82,23 @@ def _title(text, stem):
     return found[1].strip() if found else stem
 
 
-def _tests():
-    """Test files; of a test the address is its path in the repository, for the site holds none."""
-    for path in sorted((ROOT / "tests").glob("**/test_*.py")):
+def _files(kind, pattern):
+    """Files of code; the address of each is its path in the repository, for the site holds none."""
+    for path in sorted(ROOT.glob(pattern)):
         address = path.relative_to(ROOT).as_posix()
-        yield Text("tests", address, address, path.read_text("utf-8"))
+        yield Text(kind, address, address, path.read_text("utf-8"))
+
+
+@cache
+def citing_texts():
+    names = [docstrings(name) for name in own_names()]
+    return (*names, *texts(), *_files("code", "hapticlab/**/*.py"))
 
 
 def uses_of(name: Name):
     """The texts that use a public name under any of its paths, by kind."""
     spelt = _spellings(name)
-    return _by_kind(text for text in texts() if text.names & spelt)
+    return by_kind(text for text in texts() if text.names & spelt)
 
 
 def _spellings(name):
@@ -105,11 +113,11 @@ def _everywhere():
 
 
 def citing(number, kind):
-    """The texts that name an equation or a figure of the chapter, by kind of text."""
-    return _by_kind(text for text in texts() if number in (text.equations if kind == "equation" else text.figures))
+    """The texts that name an equation or a figure of the chapter, by kind: names, labs, pages, papers, tests, code."""
+    return by_kind(text for text in citing_texts() if number in (text.equations if kind == "equation" else text.figures))
 
 
-def _by_kind(found):
+def by_kind(found):
     kinds = {}
     for text in found:
         kinds.setdefault(text.kind, []).append(text)
@@ -119,13 +127,15 @@ def _by_kind(found):
 def links(found, there, exists=lambda address: True, most=12):
     """Yield a line of Markdown on each kind of text: links from the page ``there``; of tests, and of pages not built, names."""
     for kind, some in found.items():
-        shown = [_link(text, there, exists) for text in some[:most]]
+        shown = [link(text, there, exists) for text in some[:most]]
         rest = f" and {len(some) - most} more" if len(some) > most else ""
         yield f"- {kind.capitalize()}: {', '.join(shown)}{rest}"
 
 
-def _link(text, there, exists):
-    if text.kind == "tests":
+def link(text, there, exists):
+    if text.kind == "names":
+        return f"{{py:obj}}`{text.title} <{text.title.replace('hl', 'hapticlab', 1)}>`"
+    if text.kind in ("tests", "code"):
         return f"`{text.address}`"
     steps = "../" * there.count("/")
     return f"[{text.title}]({steps}{text.address}.md)" if exists(text.address) else text.title

@@ -88,8 +88,10 @@ def _add_tradeoff(commands, shared):
     text = "measure speed against accuracy of a scene file, and choose what is good enough at the least load"
     made = _add_command(commands, "cli.scenes.tradeoff", text, [shared])
     made.add_argument("file", metavar="FILE.py")
-    made.add_argument("--tolerance", type=_part, default=1e-2, metavar="PART", help="of the greatest force (default: 0.01)")
-    made.add_argument("--load", type=_part, default=0.5, metavar="PART", help="of the period at most (default: 0.5)")
+    words = "largest error, as a fraction of the greatest force (default: 0.01)"
+    made.add_argument("--tolerance", type=_part, default=1e-2, metavar="PART", help=words)
+    words = "largest load, as a fraction of the period (default: 0.5)"
+    made.add_argument("--load", type=_part, default=0.5, metavar="PART", help=words)
     made.add_argument("--any-hand", action="store_true", help="do not ask for passivity in every hand")
     made.add_argument("--methods", nargs="+", metavar="NAME", help="integrators (default: all but forward Euler)")
     made.add_argument("--T", dest="periods", type=float, nargs="+", metavar="SECONDS", help="sampling periods [s]")
@@ -125,7 +127,7 @@ def _add_labs(commands):
     made.add_argument("--lab", type=lab_number, nargs="+", default=[], metavar="NN", help=words)
     words = "folder of answers: write solved notebooks into DIR-solved, and mark these and the labs as they came with hapticlab"
     made.add_argument("--instructor", metavar="PATH", help=words)
-    made.add_argument("--seed", type=_seed, metavar="N", help="of an instructor's hidden cases (default: 0)")
+    made.add_argument("--seed", type=_seed, metavar="N", help="seed of an instructor's hidden cases (default: 0)")
 
 
 def _add_assign(commands):
@@ -137,11 +139,11 @@ def _add_assign(commands):
     words = "these labs, by number, or own ones by folder (default: all that came with hapticlab)"
     made.add_argument("--lab", type=lab_number, nargs="+", default=[], metavar="NN", help=words)
     made.add_argument("--instructor", required=True, metavar="PATH", help="folder of answers, which holds NN_name/solution.py")
-    made.add_argument("--seed", type=_seed, metavar="N", help="of hidden cases and of students' own numbers (default: 0)")
+    made.add_argument("--seed", type=_seed, metavar="N", help="seed of hidden cases and of students' own numbers (default: 0)")
     made.add_argument("--roster", metavar="FILE.csv", help="the class, for --personal")
-    made.add_argument("--column", metavar="NAME", help="of the roster, by which submissions will be named")
+    made.add_argument("--column", metavar="NAME", help="column of the roster by which submissions will be named")
     made.add_argument("--wheel", metavar="FILE.whl", help="hapticlab as a file, where it is not to come from an index")
-    made.add_argument("--image", metavar="NAME", help="of PrairieLearn's grader (default: hapticlab-grader:VERSION)")
+    made.add_argument("--image", metavar="NAME", help="image of PrairieLearn's grader (default: hapticlab-grader:VERSION)")
 
 
 def _add_grade(commands):
@@ -152,22 +154,22 @@ def _add_grade(commands):
     words = "lab number, or folder of a lab of your own (default: detected from the submissions)"
     made.add_argument("--lab", type=lab_number, metavar="NN", help=words)
     made.add_argument("--instructor", metavar="PATH", help="folder of answers, for hidden cases; else public ones alone count")
-    made.add_argument("--seed", type=_seed, default=0, metavar="N", help="of the hidden cases (default: 0)")
+    made.add_argument("--seed", type=_seed, default=0, metavar="N", help="seed of the hidden cases (default: 0)")
     made.add_argument("--personal", action="store_true", help="each student was handed numbers of their own, by this seed")
-    made.add_argument("--format", choices=FORMATS, default="text", help="of the results (default: text)")
+    made.add_argument("--format", choices=FORMATS, default="text", help="format of the results (default: text)")
     words = "write the results to this file; run the same command again to resume"
     made.add_argument("-o", "--output", metavar="FILE", help=words)
     made.add_argument("--pages", metavar="DIR", help="write an HTML page for each student and one of the class")
     made.add_argument("--roster", metavar="FILE.csv", help="who is in the class, by the names that another system has for them")
-    made.add_argument("--assignment", default="", metavar="NAME", help="of the column in Canvas, Moodle and nbgrader")
+    made.add_argument("--assignment", default="", metavar="NAME", help="name of the column in Canvas, Moodle and nbgrader")
     made.add_argument("--gradebook", metavar="FILE.db", help="push the points into this gradebook of nbgrader")
-    words = "so many processes, or the address of a Dask scheduler (default: one for each processor)"
+    words = "number of processes, or the address of a Dask scheduler (default: one for each processor)"
     made.add_argument("--workers", type=_workers, default=os.cpu_count() or 1, metavar="N|tcp://...", help=words)
-    words = f"for a cell, and for an exercise (default: {Limits().seconds:g})"
+    words = f"time for a cell, and for an exercise (default: {Limits().seconds:g})"
     made.add_argument("--timeout", type=_amount, default=Limits().seconds, metavar="SECONDS", help=words)
-    words = f"for a submission's processes together (default: {Limits().memory // MIB})"
+    words = f"memory for a submission's processes together (default: {Limits().memory // MIB})"
     made.add_argument("--memory", type=_memory, default=Limits().memory // MIB, metavar="MIB", help=words)
-    words = "that a submission may have at one time; from 2 on its code may also start programs (default: 1)"
+    words = "processes that a submission may have at one time; from 2 on its code may also start programs (default: 1)"
     made.add_argument("--processes", type=_whole(1, "a number of processes"), default=1, metavar="N", help=words)
     made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
     made.add_argument("--fresh", action="store_true", help="grade all submissions again, also those already graded")
@@ -182,9 +184,10 @@ def _add_concepts(commands):
     words = "what students handed in before the course: folders, zip files or notebooks"
     made.add_argument("--before", metavar="PATH", nargs="+", default=[], help=words)
     made.add_argument("--after", metavar="PATH", nargs="+", default=[], help="what they handed in after the course")
-    made.add_argument("--seed", type=_seed, default=0, metavar="N", help="of the numbers and the order of options (default: 0)")
+    words = "seed of the numbers and the order of options (default: 0)"
+    made.add_argument("--seed", type=_seed, default=0, metavar="N", help=words)
     made.add_argument("--roster", metavar="FILE.csv", help="the class, each of whom gets questions of their own")
-    made.add_argument("--column", metavar="NAME", help="of the roster, by which notebooks will be named")
+    made.add_argument("--column", metavar="NAME", help="column of the roster by which notebooks will be named")
     words = "write a class of N simulated students and its pages, to look at (default: 40)"
     made.add_argument("--demo", type=_whole(2, "a number of students"), nargs="?", const=40, metavar="N", help=words)
 
@@ -202,7 +205,7 @@ def _add_board_commands(commands, shared):
     for name, text in words.items():
         made[name] = _add_command(commands, f"cli.board.{name}", text, [shared] if name in ("ports", "doctor") else [])
         if name != "ports":
-            made[name].add_argument("--port", metavar="URL", help="by default the one known board that is plugged in")
+            made[name].add_argument("--port", metavar="URL", help="port of the board (default: the one that is plugged in)")
     made["doctor"].add_argument("--no-person", action="store_true", help="skip the checks that need a person at the handle")
     words = "also write what was found into this file, as JSON without names, to send with a question"
     made["doctor"].add_argument("--report", metavar="FILE", help=words)
@@ -211,8 +214,9 @@ def _add_board_commands(commands, shared):
     made["doctor"].add_argument("--self-test", **command, help=words)
     words = "where the self-test writes what it found (default: %(default)s)"
     made["doctor"].add_argument("--out", metavar="FILE", default="hapticlab-self-test.json", help=words)
-    made["flash"].add_argument("--board", metavar="NAME", help="uno or pico; by default as USB says, and uno where it does not")
-    made["flash"].add_argument("--image", metavar="FILE", help="by default the one that came with hapticlab")
+    words = "kind of board, uno or pico (default: as USB says, and uno where it does not)"
+    made["flash"].add_argument("--board", metavar="NAME", help=words)
+    made["flash"].add_argument("--image", metavar="FILE", help="firmware to write (default: the image that came with hapticlab)")
     made["flash"].add_argument("--yes", action="store_true", help="do not ask which paddle is built")
     words = "rehearse it on a simulated board with one thing wrong: " + ", ".join(TROUBLES)
     practice = {"nargs": "?", "const": TROUBLES[0], "choices": TROUBLES, "metavar": "TROUBLE"}
@@ -239,7 +243,7 @@ def _add_guide(commands):
     text = "say where a page for owners of a paddle is: owner, safety, faults, or the card of the first power-up"
     made = _add_command(commands, "cli.guide.guide", text)
     made.add_argument(
-        "page", nargs="?", choices=PAGES, default="owner", metavar="PAGE", help=f"{', '.join(PAGES)} (default: owner)"
+        "page", nargs="?", choices=PAGES, default="owner", metavar="PAGE", help=f"the page: {', '.join(PAGES)} (default: owner)"
     )
     made.add_argument("--open", action="store_true", help="also open it")
     made.set_defaults(pages=PAGES)
