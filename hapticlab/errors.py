@@ -95,7 +95,15 @@ class ProgramError(HapticlabError, ValueError):
 
 
 class LiveConstantError(ProgramError):
-    """A method needs constants where parameters are live; ``live`` has their names."""
+    """A method needs constants where parameters are live; ``live`` has their names.
+
+    Parameters
+    ----------
+    message : str
+        What happened, and what to do.
+    live : iterable of str
+        Names of the parameters that would have to be constants.
+    """
 
     def __init__(self, message: str, live: Iterable[str] = ()) -> None:
         super().__init__(message)
@@ -103,7 +111,15 @@ class LiveConstantError(ProgramError):
 
 
 class LongStepError(ProgramError):
-    """A step is too long for a method; ``substeps`` is a sufficient number, or None if no number is enough."""
+    """A step is too long for a method; ``substeps`` is a sufficient number, or None if no number is enough.
+
+    Parameters
+    ----------
+    message : str
+        What happened, and what to do.
+    substeps : int, optional
+        A sufficient number of substeps.
+    """
 
     def __init__(self, message, substeps=None):
         super().__init__(message)
@@ -123,6 +139,13 @@ class PortError(PaddleError):
 
     ``cause`` is one word for it: "missing", "busy", "permission", "url", "refused", "settings", "left", "slept", "silent"
     or "failed".
+
+    Parameters
+    ----------
+    message : str
+        What happened, and what to do.
+    cause : str
+        One word, as above.
     """
 
     def __init__(self, message: str, cause: str = "failed") -> None:
@@ -134,6 +157,13 @@ class LinkError(PaddleError):
     """A board does not answer, rejects a request, or uses a different protocol version.
 
     ``result`` is the board's own word for a refusal, a name in hapticlab.device.link.messages.RESULTS, else None.
+
+    Parameters
+    ----------
+    message : str
+        What happened, and what to do.
+    result : str, optional
+        The board's own word for a refusal.
     """
 
     def __init__(self, message: str, result: str | None = None) -> None:

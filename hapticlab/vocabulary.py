@@ -16,6 +16,16 @@ PAGES = (
     "bounds", "design", "measure", "identify", "methods", "errors",
 )  # fmt: skip
 
+#: what objects say of themselves that can carry no docstring
+SAYS = {
+    "hl.T": "Sampling period T [s] in a scene: a parameter that gets its value from ``hl.compile(scene, T=...)`` or the paddle.",
+    "hl.n": "Number of the present sample: ``x(n)`` is the position now, ``x(n-1)`` one sample before.",
+    "hl.t": "Time t [s] in an equation of motion: ``x(t)`` is the position of the handle, ``z.diff(t)`` a rate.",
+    "hl.library.catalogue": "All ready scenes by name, with their equations, what they need and where they run; print it.",
+    "hl.library.nominal": "Profile of the paddle that the library's scenes are set for: round numbers, not measured.",
+    "hl.design.textbook": "Profile of the paddle that the tasks of designs are set for by default: round numbers, not measured.",
+}
+
 
 class Page(ModuleType):
     """A module that prints as the list of what it holds, and answers a wrong name with those that come near."""
@@ -44,7 +54,8 @@ class Page(ModuleType):
 
     def _rows(self) -> dict[str, str]:
         title = self.__name__.replace("hapticlab", "hl", 1)
-        return {f"{title}.{name}": _first_line(getattr(self, name)) for name in self.__all__}
+        paths = {f"{title}.{name}": getattr(self, name) for name in self.__all__}
+        return {path: _first_line(path, value) for path, value in paths.items()}
 
 
 def page(name: str) -> None:
@@ -83,7 +94,7 @@ def find(words: str = "") -> Found:
     """
     asked = words.lower().split()
     values = public()
-    lines = {name: _first_line(value) for name, value in values.items()}
+    lines = {name: _first_line(name, value) for name, value in values.items()}
     at_once = {name: line for name, line in lines.items() if all(word in f"{name} {line}".lower() for word in asked)}
     return Found(at_once or {name: line for name, line in lines.items() if _speaks_of(values[name], asked)})
 
@@ -103,8 +114,8 @@ def public() -> dict[str, Any]:
     return here | {name: value for name, value in there.items() if id(value) not in known}
 
 
-def _first_line(value):
-    return (inspect.getdoc(value) or "").partition("\n")[0]
+def _first_line(path, value):
+    return SAYS.get(path) or (inspect.getdoc(value) or "").partition("\n")[0]
 
 
 def _columns(rows):

@@ -1,6 +1,7 @@
 """The arguments of what is public: in the signature, in the docstring, and the anchor of each on its page."""
 
 import inspect
+from typing import get_overloads
 
 from docutils import nodes
 from numpydoc.docscrape import NumpyDocString
@@ -13,11 +14,19 @@ SECTIONS = ("Parameters", "Other Parameters", "Attributes")
 def in_signature(value):
     """Names of the arguments that a call takes, without ``self``; none for what has no signature, as SymPy's classes."""
     try:
-        parameters = inspect.signature(value).parameters.values()
-    except (TypeError, ValueError):
+        signatures = [inspect.signature(one) for one in get_overloads(value) or [value]]
+    except (TypeError, ValueError, AttributeError):
         return []
-    names = [one.name for one in parameters if one.name not in ("self", "cls") and not one.name.startswith("_")]
+    named = [one for one in signatures if len(signatures) == 1] or [_without_positional(one) for one in signatures]
+    every = dict.fromkeys(name for one in named for name in one.parameters)
+    names = [name for name in every if name not in ("self", "cls") and not name.startswith("_")]
     return [] if inspect.isclass(value) and names == ["args", "kwargs"] else names
+
+
+def _without_positional(signature):
+    """Of one of several signatures, what a call may name: each calls its first argument what it is there."""
+    kept = [one for one in signature.parameters.values() if one.kind is not inspect.Parameter.POSITIONAL_ONLY]
+    return signature.replace(parameters=kept)
 
 
 def in_docstring(value, sections=SECTIONS):

@@ -20,15 +20,15 @@ STEPS = {
     "loop": "Whether every step ran on time during two seconds, with the motor off.",
     "link": "Whether every sample of these two seconds arrived undamaged.",
     "noise": "How wide the sensor's reading is while nobody touches the handle.",
-    "sensor": "Whether the reading follows the handle from stop to stop without jumps. A person moves the handle; the motor is off.",
+    "sensor": "Whether the reading follows the handle from stop to stop without jumps. A person moves it, with the motor off.",
     "home": "Whether the board knows where the handle is. If not, a person moves the handle to both stops.",
     "motor": "Whether the motor pulls the way it is told. The motor gives a force, at most 0.5 N, only if a person agrees.",
 }
 HEAD = """# Steps of the doctor
 
-[`hapticlab doctor`](commands.md#hapticlab-doctor) and {py:obj}`hl.doctor <hapticlab.doctor>` walk from the cable to the motor. Every
-step prints one line: its state, its name and what was found. A line that begins with `->` says what to do. The states are *ok*,
-*attention*, *fault*, *no board* and *skipped*. The walk ends at the first step that leaves nothing to go on with.
+[`hapticlab doctor`](commands.md#hapticlab-doctor) and {py:obj}`hl.doctor <hapticlab.doctor>` walk from the cable to the motor.
+Every step prints one line: its state, its name and what was found. A line that begins with `->` says what to do. The states are
+*ok*, *attention*, *fault*, *no board* and *skipped*. The walk ends at the first step that leaves nothing to go on with.
 
 The tables below are read out of the code; a `…` stands for a number or a name of your computer.
 
@@ -102,8 +102,6 @@ def _words(node, function, functions):
 
 def _last_value(name, line, function):
     """The value that a name was given last above a line; None where it is an argument, or a part of something."""
-    given = [
-        one for one in ast.walk(function)
-        if isinstance(one, ast.Assign) and one.lineno < line and isinstance(one.targets[0], ast.Name) and one.targets[0].id == name
-    ]  # fmt: skip
+    above = [one for one in ast.walk(function) if isinstance(one, ast.Assign) and one.lineno < line]
+    given = [one for one in above if isinstance(one.targets[0], ast.Name) and one.targets[0].id == name]
     return max(given, key=lambda one: one.lineno).value if given else None

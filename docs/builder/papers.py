@@ -48,7 +48,10 @@ def _section(text, exists):
 
 def _keys(address):
     """First author and year of the papers of a page: ``gil_2004_hulin_2006`` gives two."""
-    return [(names.strip("_").split("_")[0].capitalize(), year) for names, year in re.findall(r"([a-z_]+)_(\d{4})", address.rpartition("/")[2])]
+    return [
+        (names.strip("_").split("_")[0].capitalize(), year)
+        for names, year in re.findall(r"([a-z_]+)_(\d{4})", address.rpartition("/")[2])
+    ]
 
 
 def _cites(text, author, year):

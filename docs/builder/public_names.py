@@ -7,7 +7,7 @@ from importlib import import_module
 
 import sympy as sp
 
-from hapticlab.vocabulary import PAGES
+from hapticlab.vocabulary import PAGES, SAYS
 
 #: ``hl`` itself, and every page of names in it
 NAMESPACES = ("hl", *PAGES)
@@ -50,14 +50,13 @@ class Name:
 
     @property
     def doc(self):
-        """Its own docstring; nothing for an object that has only that of its class."""
-        said = inspect.getdoc(self.value) or ""
-        return "" if self.is_object and said == inspect.getdoc(type(self.value)) else said
+        """What it says of itself: its docstring, or the line that ``hl.find`` shows of an object that can carry none."""
+        return SAYS.get(self.typed) or inspect.getdoc(self.value) or ""
 
     @property
     def first_line(self):
-        """The first line of its docstring, or of what its class is."""
-        return (self.doc or f"A {type(self.value).__name__}").partition("\n")[0]
+        """The first line of what it says of itself."""
+        return self.doc.partition("\n")[0]
 
     @cached_property
     def members(self):

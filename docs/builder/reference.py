@@ -51,8 +51,8 @@ def index(exists):
     tree = "\n".join(["```{toctree}", ":hidden:", ":maxdepth: 1", "", *NAMESPACES, *inside, "```"])
     return "\n".join([
         "# Reference", "",
-        "Every public name has a page of its own: its signature, units, ranges, errors, equation, an example with its output, and",
-        "where it is used. `hl.find(\"a word\")` searches the same names in Python.", "",
+        "Every public name has a page of its own: its signature, units, ranges, errors, equation, an example with its output,",
+        "and where it is used. `hl.find(\"a word\")` searches the same names in Python.", "",
         "| namespace | what it holds |", "| --- | --- |",
         f"| [hl](hl.md) | {_first_sentence(module_of('hl'))} |", *rows, "",
         "| page | what it answers |", "| --- | --- |", *besides, "", tree, "",
@@ -94,7 +94,7 @@ def _described(name):
     """Yield the lines of reStructuredText that describe a name."""
     if name.is_object:
         yield from [f".. py:data:: {name.path}", f"   :type: {type(name.value).__name__}", ""]
-        yield from (f"   {line}" for line in (name.doc or name.first_line).splitlines())
+        yield from (f"   {line}" for line in name.doc.splitlines())
         return
     yield f".. auto{'class' if name.is_class else 'function'}:: {name.path}"
     for short, member in name.members.items():

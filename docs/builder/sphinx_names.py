@@ -37,10 +37,10 @@ def resolve(app, env, node, contnode):
 
 def name_neighbours(app, doctree):
     """In a signature, a name is that of its own namespace, where there are two: ``Task`` in ``hl.people``."""
-    for node in doctree.findall(addnodes.pending_xref):
-        near = f"{node.get('py:module')}.{node['reftarget']}"
-        if near in _documented():
-            node["reftarget"] = near
+    for signature in doctree.findall(addnodes.desc_signature):
+        for node in signature.findall(addnodes.pending_xref):
+            near = f"{signature.get('module')}.{node['reftarget']}"
+            node["reftarget"] = _documented().get(near, node["reftarget"])
 
 
 @cache
@@ -50,7 +50,7 @@ def _documented():
     for name in own_names():
         defined, own = getattr(name.value, "__module__", ""), getattr(name.value, "__qualname__", name.short)
         for short, path in [("", name.path), *((f".{one}", f"{name.path}.{one}") for one in name.members)]:
-            for spelt in (f"{defined}.{own}{short}", f"{own}{short}", f"{name.short}{short}", f"{name.typed}{short}"):
+            for spelt in (f"{defined}.{own}{short}", f"{own}{short}", f"{name.short}{short}", f"{name.typed}{short}", path):
                 known.setdefault(spelt, path)
     return known
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from .public_names import NAMESPACES, Name, module_of, names_of, own_names
+from .public_names import NAMESPACES, module_of, names_of, own_names
 
 ROOT = Path(__file__).parents[2]
 _DOTTED = re.compile(r"\bhl\.(\w+)(?:\.(\w+))?")
@@ -95,7 +95,7 @@ def citing_texts():
     return (*names, *texts(), *_files("code", "hapticlab/**/*.py"))
 
 
-def uses_of(name: Name):
+def uses_of(name):
     """The texts that use a public name under any of its paths, by kind."""
     spelt = _spellings(name)
     return by_kind(text for text in texts() if text.names & spelt)

@@ -220,7 +220,13 @@ class Telemetry(ShowsItself):
         return labelled(variables, {"t": self.t}, self.units, **about)
 
     def save(self, path: File) -> Path:
-        """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""
+        """Write everything to a NumPy archive and return its path (``.npz`` is added where missing).
+
+        Parameters
+        ----------
+        path : str or path
+            The file to write; one that is there is replaced.
+        """
         path = Path(path)
         path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
         plain = {name: getattr(self, name) for name in ("units", "parameters", "changes", *ABOUT)}
@@ -231,7 +237,13 @@ class Telemetry(ShowsItself):
 
     @classmethod
     def load(cls, path: File) -> Telemetry:
-        """Read a file that :meth:`save` wrote; it can contain only numbers and text, never code."""
+        """Read a file that :meth:`save` wrote; it can contain only numbers and text, never code.
+
+        Parameters
+        ----------
+        path : str or path
+            The file to read, an ``.npz``.
+        """
         try:
             with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
                 about = json.loads(str(file["about"]))
@@ -242,7 +254,13 @@ class Telemetry(ShowsItself):
             raise AnalysisError(f"{path} is not a telemetry file ({problem}); give a file that log.save() wrote") from None
 
     def to_csv(self, path: File) -> File:
-        """Write a table whose header carries the units, and return its path; flags appear where any is raised."""
+        """Write a table whose header carries the units, and return its path; flags appear where any is raised.
+
+        Parameters
+        ----------
+        path : str or path
+            The file to write; one that is there is replaced.
+        """
         raised = [name for name in FLAGS if getattr(self, name).any()]
         header = [f"{name} [{self.units.get(name, '1')}]" for name in self.columns] + raised
         columns = [getattr(self, name).tolist() for name in self.columns]

@@ -45,14 +45,30 @@ class Paddle(ShowsItself, ABC):
 
     @abstractmethod
     def run(self, scene: Scene | Program, duration: Number, **options: Any) -> Telemetry:
-        """Run a scene or a program for a duration [s] and return its Telemetry."""
+        """Run a scene or a program for a duration [s] and return its Telemetry.
+
+        Parameters
+        ----------
+        scene : Scene or Program
+            A scene with every parameter bound, or the program that was compiled from one.
+        duration : float or text
+            How long to run [s], > 0, or a text with its unit, "2 s".
+        **options
+            As for :func:`hapticlab.compile`: method, substeps, hold, dtype, live ...
+        """
 
     @abstractmethod
     def __str__(self) -> str:
         """Say what the paddle is and where its constants come from."""
 
     def ticks(self, duration: Number | None) -> int:
-        """Return the number of samples in a duration [s]."""
+        """Return the number of samples in a duration [s].
+
+        Parameters
+        ----------
+        duration : float or text
+            [s], > 0, rounded to a whole number of periods.
+        """
         duration = number("duration", duration, "s", "a run", above=0, error=PaddleError)
         warn_of_unusual("duration", duration, "s", DEVICE["duration"])
         if not math.isfinite(duration / self.T):
@@ -64,6 +80,13 @@ class Paddle(ShowsItself, ABC):
 
     def program(self, scene: Scene | Program, **options: Any) -> Program:
         """Return the program of a scene for this paddle: T and the velocity's source are the paddle's.
+
+        Parameters
+        ----------
+        scene : Scene or Program
+            A scene with every parameter bound, or the program that was compiled from one.
+        **options
+            As for :func:`hapticlab.compile`: method, substeps, hold, dtype, live ...
 
         Raises
         ------
@@ -89,7 +112,13 @@ class Paddle(ShowsItself, ABC):
         return self.accept(program)
 
     def accept(self, program: Program) -> Program:
-        """Return the program if this paddle can run it, else raise PaddleError."""
+        """Return the program if this paddle can run it, else raise PaddleError.
+
+        Parameters
+        ----------
+        program : Program
+            Of :func:`hapticlab.compile`, for the period of this paddle.
+        """
         name = program.name
         if not math.isclose(program.T, self.T, rel_tol=1e-9):
             raise PaddleError(

@@ -151,7 +151,7 @@ def fitts(
 ) -> Fitts:
     """Let a simulated hand move back and forth between targets at x = 0 and x = distance, with a scene on the handle.
 
-    The hand makes :class:`~hapticlab.experiments.submovements.Submovements`: it aims, sees a reaction time later where
+    The hand makes submovements: it aims, sees a reaction time later where
     it is, and corrects where it missed. It expects an empty handle: what a scene adds is met by correction.
 
     Parameters

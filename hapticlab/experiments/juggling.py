@@ -145,8 +145,8 @@ def juggle(
     stroke that speeds up by 2 m/s^2 at impact, at 0.2 m and with 0.5 N of noise in the hand, sight alone loses it,
     touch alone keeps it in one run of two, both keep it within 7 % rms (tests/benchmarks/experiments.py).
 
-    Without looking, a stroke that speeds up at impact does not lose the ball either, though :func:`multipliers` calls
-    that impact unstable: the impacts leave it, within some ten flights, for the later moment at which the same stroke
+    Without looking, a stroke that speeds up at impact does not lose the ball either, though the linearised map of the juggle
+    calls that impact unstable: the impacts leave it, within some ten flights, for the later moment at which the same stroke
     passes the same speed while it slows down, and stay there (for 2 m/s^2: 38 ms late, 13 mm higher, at -1.7 m/s^2).
     One stroke a flight has two such moments, one unstable and one stable. The heights, taken from where the ball is
     struck, are the same.
@@ -162,7 +162,7 @@ def juggle(
     duration : float
         [s]
     acceleration : float
-        Of the plate at impact that strokes aim at [m/s^2]; :func:`multipliers` says for which a juggle is stable
+        Of the plate at impact that strokes aim at [m/s^2]; the linearised map of the juggle says for which a juggle is stable
         without looking.
     perception : Perception
         How sharp the senses are, and how late: ``hl.people.Perception(vision=, touch=, reaction=)``.

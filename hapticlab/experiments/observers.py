@@ -65,14 +65,40 @@ class SimulatedObserver(ShowsItself):
         return Psychometric(math.log1p(self.weber), 1.0, 0.5, self.lapse / 2)
 
     def ready(self, task: Task, which: Answer) -> None:
-        """Announce the first or second presentation."""
+        """Announce the first or second presentation.
+
+        Parameters
+        ----------
+        task : Task
+            What is presented next.
+        which : {"first", "second"}
+            Which presentation of the trial it is.
+        """
 
     def compare(self, task: Task, logs: Sequence[Telemetry], trial: int) -> Answer:
-        """The answer: "first" or "second", whichever felt stronger in these two records."""
+        """The answer: "first" or "second", whichever felt stronger in these two records.
+
+        Parameters
+        ----------
+        task : Task
+            What is compared.
+        logs : sequence of Telemetry
+            The records of both presentations.
+        trial : int
+            Number of the trial, from 0; it draws the noise.
+        """
         return self.decide([task.felt(log) for log in logs], trial)
 
     def decide(self, felt: Sequence[float], trial: int) -> Answer:
-        """The answer to two felt magnitudes > 0; the trial's number draws the noise."""
+        """The answer to two felt magnitudes > 0; the trial's number draws the noise.
+
+        Parameters
+        ----------
+        felt : (float, float)
+            Felt magnitudes of the first and the second presentation, in the unit of the task, > 0.
+        trial : int
+            Number of the trial, from 0.
+        """
         rng = np.random.default_rng([self.seed, trial])
         if rng.random() < self.lapse:
             return ("first", "second")[rng.integers(2)]
@@ -82,7 +108,13 @@ class SimulatedObserver(ShowsItself):
         return "first" if first > second + self.bias else "second"
 
     def told(self, right: bool) -> None:
-        """Report whether the answer was right."""
+        """Report whether the answer was right.
+
+        Parameters
+        ----------
+        right : bool
+            Whether the answer was right.
+        """
 
     def __str__(self) -> str:
         return f"simulated observer, Weber fraction {100 * self.weber:g} %, {100 * self.lapse:g} % lapses, seed {self.seed}"
@@ -103,15 +135,39 @@ class PersonObserver(ShowsItself):
     feedback: bool = False
 
     def ready(self, task: Task, which: Answer) -> None:
-        """Ask the person to hold the handle, and wait for Enter."""
+        """Ask the person to hold the handle, and wait for Enter.
+
+        Parameters
+        ----------
+        task : Task
+            What is presented next.
+        which : {"first", "second"}
+            Which presentation of the trial it is.
+        """
         self.person.ask(f"{which.capitalize()} one: hold the handle and press Enter, then feel it for {task.duration:g} s.")
 
     def compare(self, task: Task, logs: Sequence[Telemetry], trial: int) -> Answer:
-        """Return the answer of the person, "first" or "second"."""
+        """Return the answer of the person, "first" or "second".
+
+        Parameters
+        ----------
+        task : Task
+            What is compared.
+        logs : sequence of Telemetry
+            The records of both presentations, which the person does not see.
+        trial : int
+            Number of the trial, from 0.
+        """
         return self.person.choose(task.question, INTERVALS)
 
     def told(self, right: bool) -> None:
-        """Say whether the answer was right, where feedback is on."""
+        """Say whether the answer was right, where feedback is on.
+
+        Parameters
+        ----------
+        right : bool
+            Whether the answer was right.
+        """
         if self.feedback:
             self.person.say("right" if right else "wrong")
 

@@ -134,7 +134,13 @@ class Psi(ShowsItself):
         return total
 
     def answer(self, right: bool) -> None:
-        """Take an answer at :attr:`level`."""
+        """Take an answer at :attr:`level`.
+
+        Parameters
+        ----------
+        right : bool
+            Whether the answer was right.
+        """
         chance = self._right[:, :, np.argmin(self.expected_entropy())]
         belief = self.belief * (chance if right else 1 - chance)
         self.belief, self.told = belief / belief.sum(), self.told + 1
@@ -144,7 +150,13 @@ class Psi(ShowsItself):
         return float(np.exp(self.belief.sum(1) @ np.log(self.thresholds)))
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
-        """Thresholds between which this fraction of the posterior lies, with equal tails."""
+        """Thresholds between which this fraction of the posterior lies, with equal tails.
+
+        Parameters
+        ----------
+        confidence : float
+            The fraction, 0 ... 1.
+        """
         mass = np.cumsum(self.belief.sum(1)) - self.belief.sum(1) / 2
         tail = (1 - confidence) / 2
         low, high = np.interp([tail, 1 - tail], mass, np.log(self.thresholds))
@@ -156,6 +168,15 @@ class Psi(ShowsItself):
 
 class ConstantLevels(ShowsItself):
     """Method of constant stimuli: each level a number of times, in an order drawn from the seed.
+
+    Parameters
+    ----------
+    levels : sequence of float
+        Levels of the stimulus, in the unit of the task.
+    repeats : int
+        How often each is presented, >= 1.
+    seed : int
+        Of the order.
 
     Examples
     --------
@@ -182,7 +203,13 @@ class ConstantLevels(ShowsItself):
         return self.order[self.told]
 
     def answer(self, right: bool) -> None:
-        """Record an answer, which does not affect the next levels."""
+        """Record an answer, which does not affect the next levels.
+
+        Parameters
+        ----------
+        right : bool
+            Whether the answer was right.
+        """
         self.told += 1
 
     def __str__(self) -> str:

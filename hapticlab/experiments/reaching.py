@@ -240,9 +240,19 @@ def follow(
 
     Parameters
     ----------
+    paddle : SimulatedPaddle
+        With a hand that has a spring; its target position is replaced.
+    scene : Scene or Program
+        A scene with every parameter bound, or the program that was compiled from one.
+    record : float
+        How long the record is [s], > 0.
+    control : Control
+        How the hand controls the motion; as for :func:`reach`.
     path : object with ``at(t)`` that returns position [m], velocity [m/s], acceleration [m/s^2]
         ``hl.people.MinimumJerk`` or an :class:`~hapticlab.analysis.accuracy.handle_motions.HandleMotion`. The others
         are those of :func:`reach`.
+    **options
+        As for ``paddle.run``.
     """
     hand = check_held(paddle, "reach")
     check_path(path)

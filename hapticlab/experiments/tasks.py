@@ -66,17 +66,41 @@ class Task(ShowsItself):
         return f"{self.name}: {self.question} The standard is {self.parameter} = {self.standard:g} {self.unit}"
 
     def on(self, paddle: SimulatedPaddle | SerialPaddle) -> SimulatedPaddle | SerialPaddle:
-        """A simulated paddle with the exploring hand on it, unless it has a hand already; a board as it is."""
+        """A simulated paddle with the exploring hand on it, unless it has a hand already; a board as it is.
+
+        Parameters
+        ----------
+        paddle : SimulatedPaddle or SerialPaddle
+            Where the task is to be presented.
+        """
         if isinstance(paddle, SimulatedPaddle) and paddle.hand is None:
             return replace(paddle, hand=self.hand)
         return paddle
 
     def present(self, paddle: SimulatedPaddle | SerialPaddle, value: float, **options: Any) -> Telemetry:
-        """Render the scene with this value for one presentation and return the record; the motor is off after it."""
+        """Render the scene with this value for one presentation and return the record; the motor is off after it.
+
+        Parameters
+        ----------
+        paddle : SimulatedPaddle or SerialPaddle
+            Where the scene runs.
+        value : float
+            Of the parameter that the task varies, in its SI unit.
+        **options
+            As for ``paddle.run``.
+        """
         return paddle.run(self.scene(**{self.parameter: value}), duration=self.duration, progress=False, **options)
 
     def presenter(self, paddle: SimulatedPaddle | SerialPaddle, **options: Any) -> Callable[[float], Telemetry]:
-        """A function that presents a value and returns the record; a simulated paddle's program is compiled once for all."""
+        """A function that presents a value and returns the record; a simulated paddle's program is compiled once for all.
+
+        Parameters
+        ----------
+        paddle : SimulatedPaddle or SerialPaddle
+            Where the scene runs.
+        **options
+            As for ``paddle.run``.
+        """
         if not isinstance(paddle, SimulatedPaddle) or isinstance(getattr(paddle.hand, "intent", None), Reacting):
             return lambda value: self.present(paddle, value, **options)
         engine = options.pop("engine", "auto")

@@ -135,7 +135,13 @@ class UpDown(ShowsItself):
         return len(self.turned) >= self.reversals or self.gave_up is not None
 
     def answer(self, right: bool) -> None:
-        """Record an answer at this level and set the next level."""
+        """Record an answer at this level and set the next level.
+
+        Parameters
+        ----------
+        right : bool
+            Whether the answer was right.
+        """
         self.told += 1
         self._at_end = self._at_end + 1 if self.level == (self.low if right else self.high) else 0
         self._step(right)

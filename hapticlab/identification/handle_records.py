@@ -61,11 +61,27 @@ class HandleRecord(ShowsItself):
 
     @classmethod
     def hanging(cls, log: Telemetry, mass: float, *, at_rest: bool = True) -> HandleRecord:
-        """The record of a handle that a weight pulls into the wall: it adds its force and its mass."""
+        """The record of a handle that a weight pulls into the wall: it adds its force and its mass.
+
+        Parameters
+        ----------
+        log : Telemetry
+            Of a motion into a wall.
+        mass : float
+            Of the weight [kg], > 0.
+        at_rest : bool
+            Whether the handle rests at the first sample.
+        """
         return cls(log, mass, mass * GRAVITY, at_rest)
 
     def trace(self, first: int = 0) -> Trace:
-        """The positions and forces of the record from sample ``first`` on."""
+        """The positions and forces of the record from sample ``first`` on.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first sample that is used, >= 0.
+        """
         check_record(self.log, "identify")
         if self.log.fault:
             raise AnalysisError(f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end")
@@ -163,7 +179,21 @@ def chirp_response(
     at_rest: bool = True,
     confidence: float = 0.95,
 ) -> PaddleFit:
-    """Mass, damping, Coulomb friction and delay from a force of rising frequency; as :func:`step_response`."""
+    """Mass, damping, Coulomb friction and delay from a force of rising frequency; as :func:`step_response`.
+
+    Parameters
+    ----------
+    log : Telemetry
+        Of a force of rising frequency.
+    counts_per_metre : float, optional
+        Encoder counts per metre [1/m], > 0.
+    known : dict of str to float, optional
+        Constants that are known and not fitted, by name, in SI.
+    at_rest : bool
+        Whether the handle rests at the first sample.
+    confidence : float
+        Of the intervals, 0 ... 1.
+    """
     check_record(log, "chirp_response")
     changes = np.count_nonzero(np.diff(log.F))
     if changes <= len(log) / 4:

@@ -52,7 +52,13 @@ class MotorCurve(Estimated):
     forces: Array
 
     def force(self, duties: ArrayLike) -> Array:
-        """Return the force [N] at duties 0 ... 1, without the offset."""
+        """Return the force [N] at duties 0 ... 1, without the offset.
+
+        Parameters
+        ----------
+        duties : array_like
+            Duties, 0 ... 1.
+        """
         return _curve([self[name].value for name in NAMES if name != "offset"], np.asarray(duties, float))
 
     def values(self) -> dict[str, float]:
@@ -60,7 +66,13 @@ class MotorCurve(Estimated):
         return {name: self[name].value for name in NAMES if name != "offset"}
 
     def as_constants(self, base: PaddleProfile | None) -> list[Estimate]:
-        """Return what was found as constants of a profile."""
+        """Return what was found as constants of a profile.
+
+        Parameters
+        ----------
+        base : PaddleProfile or None
+            The profile whose constants they replace.
+        """
         source = f"identified from {len(self.duties)} readings of a scale, {self.confidence:.0%} interval"
         return [bounded(name, self[name], source) for name in NAMES if name != "offset"]
 

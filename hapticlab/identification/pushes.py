@@ -40,6 +40,17 @@ def push_hand(paddle: SimulatedPaddle | SerialPaddle, *, force: float = FORCE, p
     Further than 30 mm from where it began, or faster than 1 m/s, the motor is off for good. On a board an eighth, a
     quarter and half of the force are tried before, until the handle comes back: a free one is not pushed harder.
 
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or SerialPaddle
+        With a hand at its handle.
+    force : float
+        Of a push [N], > 0.
+    pushes : int
+        How many, >= 1.
+    seed : int
+        Of their times and directions.
+
     Raises
     ------
     PaddleError

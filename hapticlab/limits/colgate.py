@@ -162,6 +162,15 @@ def equivalent_damper(device: AnyDevice, law: LinearLaw, theta: ArrayLike) -> Ar
     The part of the held force in phase with the velocity, over the velocity: at whole multiples of theta = pi averaged
     over the phase between motion and samples. Of the device the delay is read; its T must be that of the law.
 
+    Parameters
+    ----------
+    device : Device or paddle
+        Its delay and T are read.
+    law : LinearLaw
+        For the same T.
+    theta : array_like
+        Frequency times period, w T [rad], > 0.
+
     Examples
     --------
     >>> law = LinearLaw.of("zoh", K=100.0, T=1e-3)

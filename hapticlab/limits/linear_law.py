@@ -124,7 +124,17 @@ class LinearLaw(ShowsItself):
 
     @classmethod
     def of_taps(cls, taps: ArrayLike, *, T: float, name: str = "taps") -> LinearLaw:
-        """Return the law F[n] = taps[0] x[n] + taps[1] x[n-1] + ..., one or more finite weights in N/m."""
+        """Return the law F[n] = taps[0] x[n] + taps[1] x[n-1] + ..., one or more finite weights in N/m.
+
+        Parameters
+        ----------
+        taps : array_like
+            Weights [N/m] on x[n], x[n-1], ..., finite, one or more.
+        T : float
+            Sampling period [s], > 0.
+        name : str
+            What prints and plots are to call it.
+        """
         weights = _numbers(name, "taps", taps, (max(np.size(taps), 1),))
         n = len(weights) - 1
         return cls(np.eye(n, k=-1), np.eye(n, 1)[:, 0], weights[1:].copy(), float(weights[0]), float(T), name)
@@ -161,14 +171,26 @@ class LinearLaw(ShowsItself):
         return plot_law(self)
 
     def require_period(self, T: float | None) -> None:
-        """Refuse a device of another sampling period [s]; None is not known."""
+        """Refuse a device of another sampling period [s]; None is not known.
+
+        Parameters
+        ----------
+        T : float or None
+            Sampling period of the device [s].
+        """
         if T is not None and not abs(self.T - T) <= 1e-9 * T:
             raise AnalysisError(
                 f"{self.name} is a law with T = {self.T:g} s, but the paddle samples every {T:g} s. Make the law for that period"
             )
 
     def named(self, name: str) -> LinearLaw:
-        """Return the same law under another name."""
+        """Return the same law under another name.
+
+        Parameters
+        ----------
+        name : str
+            What prints and plots are to call it.
+        """
         return LinearLaw(self.A, self.B, self.C, self.D, self.T, name)
 
     def __add__(self, other: LinearLaw) -> LinearLaw:
@@ -186,7 +208,13 @@ class LinearLaw(ShowsItself):
         return LinearLaw(self.A, self.B, gain * self.C, gain * self.D, self.T, f"{gain:g} x {self.name}")
 
     def then(self, taps: ArrayLike) -> LinearLaw:
-        """Return the law whose force is taps[0] F[n] + taps[1] F[n-1] + ..., as a delay or the filter of Eq. (23.8)."""
+        """Return the law whose force is taps[0] F[n] + taps[1] F[n-1] + ..., as a delay or the filter of Eq. (23.8).
+
+        Parameters
+        ----------
+        taps : array_like
+            Weights without unit on F[n], F[n-1], ...
+        """
         after = LinearLaw.of_taps(taps, T=self.T)
         A = np.block([[self.A, np.zeros((len(self.A), len(after.A)))], [np.outer(after.B, self.C), after.A]])
         ends = (np.r_[self.B, after.B * self.D], np.r_[after.D * self.C, after.C], after.D * self.D)
@@ -196,6 +224,11 @@ class LinearLaw(ShowsItself):
         """Return H(e^(j theta)) [N/m], theta = w T of any shape; complex array of that shape.
 
         At a pole on the unit circle, as an integrator's at theta = 0, there is no value: inf.
+
+        Parameters
+        ----------
+        theta : array_like
+            Frequency times period, w T [rad], of any shape.
         """
         theta = np.asarray(theta, dtype=float)
         if not len(self.A):
@@ -208,7 +241,13 @@ class LinearLaw(ShowsItself):
         return np.where(on_pole, np.inf, inside @ self.C + self.D)
 
     def impulse(self, count: int) -> Array:
-        """Return the first ``count`` forces [N/m] of a handle that was at one metre at the first sample alone."""
+        """Return the first ``count`` forces [N/m] of a handle that was at one metre at the first sample alone.
+
+        Parameters
+        ----------
+        count : int
+            Number of samples, >= 1.
+        """
         forces, state = [self.D], self.B
         for _ in range(count - 1):
             forces.append(float(self.C @ state))
@@ -243,7 +282,7 @@ class LinearLaw(ShowsItself):
 
     @property
     def radius(self) -> float:
-        """Largest |pole| with the handle held; 0 for a law of finite memory."""
+        """Largest magnitude of a pole with the handle held; 0 for a law of finite memory."""
         return float(np.abs(np.linalg.eigvals(self.A)).max()) if len(self.A) and not self.finite else 0.0
 
     def __str__(self) -> str:

@@ -157,6 +157,14 @@ def closed_loop_matrix(
 
     Parameters
     ----------
+    device : Device or paddle
+        Its m, b, T, delay and hand are read.
+    law : str, Scene, LinearLaw or callable
+        As for :func:`stability_limit`.
+    B : float
+        Virtual damper of either sign [N s/m], in parallel with the law.
+    parameter : str
+        The scene's parameter that is K.
     K : float
         Stiffness [N/m]; None for a LinearLaw or a scene that holds its own, and for these alone. The others are those
         of :func:`stability_limit`.
@@ -181,7 +189,21 @@ def closed_loop_matrix(
 def closed_loop_poles(
     device: AnyDevice, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
 ) -> NDArray[np.complex128]:
-    """Eigenvalues of :func:`closed_loop_matrix`, largest magnitude first: complex array of shape (n,)."""
+    """Eigenvalues of :func:`closed_loop_matrix`, largest magnitude first: complex array of shape (n,).
+
+    Parameters
+    ----------
+    device : Device or paddle
+        Its m, b, T, delay and hand are read.
+    K : float, optional
+        Stiffness [N/m]; None for a LinearLaw or a scene that holds its own.
+    law : str, Scene, LinearLaw or callable
+        As for :func:`stability_limit`.
+    B : float
+        Virtual damper of either sign [N s/m], in parallel with the law.
+    parameter : str
+        The scene's parameter that is K.
+    """
     loop, K = _loop_at(device, K, law, B, parameter)
     poles = 1 + loop.poles(K)
     return poles[np.argsort(-abs(poles), kind="stable")]

@@ -88,7 +88,13 @@ class TwoPort(ShowsItself):
     stable: bool
 
     def criterion(self, theta: ArrayLike) -> Array:
-        """Return 2 Re h11 Re h22 - |h12 h21| - Re(h12 h21), a number without unit that has to be >= 0; theta of shape (P,)."""
+        """Return ``2 Re h11 Re h22 - |h12 h21| - Re(h12 h21)``, a number without unit that has to be >= 0.
+
+        Parameters
+        ----------
+        theta : array_like
+            Frequency times period, w T [rad], shape (P,).
+        """
         h = self.h(np.atleast_1d(np.asarray(theta, dtype=float)))
         product = h[:, 0, 1] * h[:, 1, 0]
         # |p| + Re p, without loss where p is near a negative number
@@ -113,7 +119,15 @@ class TwoPort(ShowsItself):
         return plot_two_port(self)
 
     def felt(self, theta: ArrayLike, environment: ArrayLike) -> NDArray[np.complex128]:
-        """Return F_1/v_1 at theta of shape (P,) with ``F_2 = environment v_2`` at the other port, complex (P,)."""
+        """Return F_1/v_1 at theta of shape (P,) with ``F_2 = environment v_2`` at the other port, complex (P,).
+
+        Parameters
+        ----------
+        theta : array_like
+            Frequency times period, w T [rad], shape (P,).
+        environment : array_like
+            Impedance of the environment [N s/m], complex, shape (P,) or a number.
+        """
         h, Z = self.h(np.atleast_1d(np.asarray(theta, dtype=float))), np.asarray(environment)
         return h[:, 0, 0] - h[:, 0, 1] * h[:, 1, 0] * Z / (1 + h[:, 1, 1] * Z)
 
@@ -121,6 +135,11 @@ class TwoPort(ShowsItself):
         """Return the least Re F_1/v_1 that a passive environment can make the hand feel, theta of shape (P,).
 
         A passive environment fills a half plane, which the fractional map of the two-port turns into a disk.
+
+        Parameters
+        ----------
+        theta : array_like
+            Frequency times period, w T [rad], shape (P,).
         """
         h = self.h(np.atleast_1d(np.asarray(theta, dtype=float)))
         product = h[:, 0, 1] * h[:, 1, 0]

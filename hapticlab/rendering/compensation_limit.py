@@ -67,7 +67,13 @@ class CompensationLimit(ShowsItself):
         return self.hunts_from(0.0)
 
     def left(self, viscous: float) -> float:
-        """Return the remaining damping [N s/m], negative if the handle is driven."""
+        """Return the remaining damping [N s/m], negative if the handle is driven.
+
+        Parameters
+        ----------
+        viscous : float
+            Fraction of the viscous damping that is compensated, >= 0.
+        """
         return self.b - viscous * self.b_device
 
     def hunts_from(self, viscous: float) -> float:
@@ -76,6 +82,11 @@ class CompensationLimit(ShowsItself):
         Without a hand's spring that is 1. About a spring the handle must break away at every turn, so that more is
         needed: 2/(1 + r), where r is the part of its swing that half a period with the damping left keeps. Of sampling
         period and width ``speed`` to zero. Less by as much as the friction may be less than believed.
+
+        Parameters
+        ----------
+        viscous : float
+            Fraction of the viscous damping that is compensated, >= 0.
         """
         kept = self._kept(viscous)
         sure = self.coulomb_least / self.coulomb if self.coulomb else 1.0
@@ -86,6 +97,13 @@ class CompensationLimit(ShowsItself):
 
         0 where it comes to rest, infinite where nothing holds it. Exact for the sampled loop and any estimate of v,
         with ``sign="dead_zone"``; for ``"smooth"`` where it is far beyond ``speed``.
+
+        Parameters
+        ----------
+        viscous : float
+            Fraction of the viscous damping that is compensated, >= 0.
+        dry : float
+            Fraction of the Coulomb friction that is compensated, >= 0.
         """
         self._free("a steady speed")
         if viscous >= self.viscous:
@@ -97,6 +115,13 @@ class CompensationLimit(ShowsItself):
 
         (coulomb_least - dry coulomb)/(-damping left) where more than all viscous damping is compensated; infinite where
         it is not.
+
+        Parameters
+        ----------
+        viscous : float
+            Fraction of the viscous damping that is compensated, >= 0.
+        dry : float
+            Fraction of the Coulomb friction that is compensated, >= 0.
         """
         self._free("a kick")
         if viscous <= self.viscous:
@@ -108,6 +133,13 @@ class CompensationLimit(ShowsItself):
 
         g/k (1 + r)/(1 - r) with g = dry coulomb - coulomb_least the force left over: over half a period the handle
         swings about g/k and keeps the part r of its swing. Infinite where the damping left is not positive.
+
+        Parameters
+        ----------
+        viscous : float
+            Fraction of the viscous damping that is compensated, >= 0.
+        dry : float
+            Fraction of the Coulomb friction that is compensated, >= 0.
         """
         if not self.k:
             raise AnalysisError("no spring to hunt about: the hand has k = 0 N/m. Use speed(viscous, dry)")

@@ -202,6 +202,13 @@ def deadbeat_gains(paddle: AnyDevice, *, hand: Hand | None = None) -> DeadbeatGa
     The error of a crossing that is located shrinks as T^3, faster than the gains grow; the errors of an encoder and of
     the model do not.
 
+    Parameters
+    ----------
+    paddle : Device or paddle
+        Its m, b and T are read.
+    hand : Hand, optional
+        Its spring, damper and mass are part of the model; by default that of the paddle.
+
     Examples
     --------
     >>> import hapticlab as hl

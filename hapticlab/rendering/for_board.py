@@ -68,7 +68,7 @@ def wall_for_board(paddle: SimulatedPaddle, *, K: float, board: str | Board = "u
     K : float
         [N/m]
     board : str
-        See :func:`hapticlab.compiler.boards.cost.cost`.
+        Whose cycles are counted, by name: "uno" or "pico".
     **options
         B, hand, velocity, force_max of :func:`digital_wall`.
 

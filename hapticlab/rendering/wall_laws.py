@@ -128,7 +128,7 @@ def wall_law(
     clamp: bool = False,
     velocity: Literal["model"] | None = None,
 ) -> WallLaw:
-    """Return a wall of stiffness K as one of :data:`LAWS` renders it.
+    """Return a wall of stiffness K as a law of that name renders it.
 
     Parameters
     ----------

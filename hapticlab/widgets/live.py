@@ -70,7 +70,7 @@ def live(
     time_scale : float
         Scene time over the clock's: 0.1 is slow motion. A board's is 1.
     picture : str, shapes or callable, optional
-        Instead of the scene's own picture: see :func:`~hapticlab.widgets.picture.moving_picture`.
+        Instead of the scene's own picture: see ``scene.picture``.
     let_go : bool
         True: a hand that is dragged by the pointer lets go of the handle where the drag is released, so that the handle can be
         thrown. On a board the hand is yours, and nothing changes.

@@ -72,11 +72,25 @@ class HandleMotion(ShowsItself):
             raise AnalysisError(f"{self.name}: duration = {self.duration} s; needs a finite duration > 0 s")
 
     def at(self, times: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return (x, v, a) at an array of times [s]: three arrays, in m, m/s, m/s^2."""
+        """Return (x, v, a) at an array of times [s]: three arrays, in m, m/s, m/s^2.
+
+        Parameters
+        ----------
+        times : array_like
+            [s], one dimension.
+        """
         return tuple(self.derivatives(times, 2))
 
     def derivatives(self, times: ArrayLike, order: int) -> Array:
-        """Return x and its derivatives up to an order at an array of times: array (order + 1, times)."""
+        """Return x and its derivatives up to an order at an array of times: array (order + 1, times).
+
+        Parameters
+        ----------
+        times : array_like
+            [s], one dimension.
+        order : int
+            Highest derivative, >= 0.
+        """
         times, (graph, wanted) = np.atleast_1d(np.asarray(times, float)), _translated(sp.sympify(self.x), order)
         angles = {u: 2 * np.pi * float(u.args[0]) * times for u in graph.variables if isinstance(u, driven)}
         found = graph.evaluate(wanted, {t: times} | angles)
@@ -97,7 +111,13 @@ class HandleMotion(ShowsItself):
         return figure
 
     def scaled(self, factor: float) -> HandleMotion:
-        """Return the same motion, scaled by a factor."""
+        """Return the same motion, scaled by a factor.
+
+        Parameters
+        ----------
+        factor : float
+            Of positions, velocities and accelerations.
+        """
         return HandleMotion(self.name, factor * self.x, self.duration, self.why, self.breaks)
 
     def __str__(self) -> str:

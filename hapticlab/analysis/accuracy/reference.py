@@ -120,7 +120,19 @@ class Reference(ShowsItself):
 
 
 def reference(scene: Scene, motion: HandleMotion, *, step: float = STEP, tolerance: float = TOLERANCE) -> Reference:
-    """Return the :class:`Reference` of a scene under one motion of the handle; see :func:`references`."""
+    """Return the force of a scene as its equations have it, under one motion of the handle.
+
+    Parameters
+    ----------
+    scene : Scene
+        With every parameter bound.
+    motion : HandleMotion
+        Motion of the handle.
+    step : float
+        Largest step of the solver [s], > 0.
+    tolerance : float
+        Relative tolerance of the solver, > 0.
+    """
     return references(scene, [motion], step=step, tolerance=tolerance)[0]
 
 

@@ -65,7 +65,7 @@ def tradeoff(
 
     The handle is led along motions; the force of each compiled setting is compared with a reference that two
     independent solvers agree on, and with what the paddle's encoder alone makes of it. On boards cost is predicted, as
-    :func:`~hapticlab.compiler.boards.cost.cost` does; here it is timed, where a setting can be the least, and estimated
+    ``paddle.cost(scene)`` of a paddle on a board does; here it is timed, where a setting can be the least, and estimated
     elsewhere.
 
     A setting is left out where a cheaper method or fewer substeps already have the error of the hold itself, and float64

@@ -76,19 +76,37 @@ class Task(ShowsItself):
 
     @functools.lru_cache(maxsize=256)  # noqa: B019  it lives as long as its task
     def limits(self, scene: Scene) -> Limits:
-        """Of stability and passivity, of a scene that renders this task."""
+        """Of stability and passivity, of a scene that renders this task.
+
+        Parameters
+        ----------
+        scene : Scene
+            One that :meth:`scene` returned.
+        """
         return Limits(scene, TRAVEL, float(total_delay(self.paddle)))
 
     @functools.lru_cache(maxsize=64)  # noqa: B019  it lives as long as its task
     def positions(self, T: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the positions that are sampled [m], late by the sensor, and what the encoder makes of them."""
+        """Return the positions that are sampled [m], late by the sensor, and what the encoder makes of them.
+
+        Parameters
+        ----------
+        T : float
+            Sampling period [s], > 0.
+        """
         times = T * np.arange(round(self.reference.horizon / T)) - self.paddle.sensor_delay
         x = self.motion.at(np.maximum(times, 0.0))[0]
         counts = self.paddle.counts_per_metre
         return x, counted(x, counts, self.paddle.rounding) if counts else x
 
     def scene(self, design: Design) -> Scene:
-        """Return the scene that a design compiles."""
+        """Return the scene that a design compiles.
+
+        Parameters
+        ----------
+        design : Design
+            Law, method, period and the other choices of a design.
+        """
         return self.rendered(design, self.paddle) if self.rendered else self.ideal
 
     def __str__(self) -> str:

@@ -137,7 +137,8 @@ def reduction(
     """Offer a scene of fewer masses whose impedance at the handle is the same within a tolerance over a band.
 
     Second-order and structure-preserving: the reduced scene has masses, springs and dampers whose energies are those of
-    the full one seen through fewer motions, so it is passive where that is (:mod:`hapticlab.analysis.impedance.moment_matching`).
+    the full one seen through fewer motions, so it is passive where that is
+    (moment matching, in ``hapticlab/analysis/impedance/moment_matching.py``).
 
     Parameters
     ----------

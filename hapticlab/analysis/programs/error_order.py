@@ -79,6 +79,8 @@ def order_of(
         Every parameter bound.
     method, hold, velocity, force_at
         Of :func:`hapticlab.compile`; its other options do not change the order.
+    **options
+        Other options of :func:`hapticlab.compile`.
 
     Returns
     -------

@@ -77,7 +77,13 @@ class Thresholds(ShowsItself):
         )
 
     def amplitude(self, frequency: float | np.ndarray) -> np.ndarray:
-        """Return the least amplitude of the handle that is noticed as a vibration [m], at a frequency [Hz]."""
+        """Return the least amplitude of the handle that is noticed as a vibration [m], at a frequency [Hz].
+
+        Parameters
+        ----------
+        frequency : float or array
+            [Hz], > 0.
+        """
         apart = np.maximum(self.best / np.asarray(frequency, float), np.asarray(frequency, float) / self.best)
         return self.motion * apart**2
 

@@ -63,8 +63,7 @@ def chatter(log: Telemetry, driven: Hand | Callable[[Array], ArrayLike] | str | 
     handle leaves the wall, or the motor is at its limit, a constant plus an exponential is fitted to the amplitudes and
     shows whether they end in a cycle or at rest; a record that leaves both possible is "undecided". Motion that is
     driven by a hand's noise or moving intent, or by a vibration in the scene, looks like chatter unless ``driven``
-    names the drive; the component that follows the drive is then subtracted
-    (:func:`~hapticlab.analysis.records.driven_motion.following`). Chatter that has locked onto the frequency of its
+    names the drive; the component that follows the drive is then subtracted. Chatter that has locked onto the frequency of its
     drive, or onto a harmonic of it up to the eighth, cannot be distinguished from the drive and is regarded as driven.
 
     Without ``x_true`` the record of a resting handle contains only the noise of the sensor: a signal that is white at

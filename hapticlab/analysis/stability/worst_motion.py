@@ -213,12 +213,12 @@ def worst_motion(
 ) -> WorstMotion:
     """Search the closed motion of the handle that draws the most energy from a scene, per period of sampling.
 
-    The hand may move the handle in any way, so a motion is its positions at N samples, again and again. In the period after
-    sample n the scene gives the hand -F (x(n+1) - x(n)), and the device dissipates b (x(n+1) - x(n))^2/T + f_c |x(n+1) -
-    x(n)| at the least, with a constant velocity; its mass stores and returns. Colgate and Schenkel's criterion is that no
-    such motion draws energy, which is the same here for scenes that switch or are not linear. The compiled program runs over each
-    motion until its force repeats itself; bodies begin in the states to which the motion leads them back. Positions are exact,
-    velocities their backward differences, and the motor does not saturate.
+    The hand may move the handle in any way, so a motion is its positions at N samples, again and again. In the period
+    after sample n the scene gives the hand -F (x(n+1) - x(n)), and the device dissipates b (x(n+1) - x(n))^2/T + f_c
+    ``|x(n+1) - x(n)|`` at the least, with a constant velocity; its mass stores and returns. Colgate and Schenkel's
+    criterion is that no such motion draws energy, which is the same here for scenes that switch or are not linear. The
+    compiled program runs over each motion until its force repeats itself; bodies begin in the states to which the
+    motion leads them back. Positions are exact, velocities their backward differences, and the motor does not saturate.
 
     All coarse motions of few samples are tried, longer ones are made from the best, and stretches of the best are shifted until
     nothing is gained. The search ends early, with shorter motions, where a scene takes many instructions.

@@ -152,11 +152,13 @@ def compare_laws(
     speed : float
         Of the start, four to five of its periods before the boundary [m/s], > 0.
     laws : str or sequence of str
-        Of :data:`hapticlab.rendering.wall_laws.LAWS`.
+        Of :func:`hapticlab.laws.wall_law`, by name.
     entries : int
         Phases of the entry.
     rendering : Rendering
         ``hl.design.Rendering(model=, unilateral=, clamp=, velocity=)``, the same for every law.
+    engine : {"auto", "llvm", "wasm", "interpreter"}
+        What runs the simulated paddle.
 
     Returns
     -------

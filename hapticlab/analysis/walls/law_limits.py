@@ -126,7 +126,7 @@ def law_limits(
     push : float
         [N], > 0, and less than the paddle's force_max: no wall answers more.
     laws : str or sequence of str
-        Of :data:`hapticlab.rendering.wall_laws.LAWS`.
+        Of :func:`hapticlab.laws.wall_law`, by name.
     first, most : float
         The softest wall tried, and the stiffest [N/m].
     duration : float

@@ -55,7 +55,7 @@ def wall_map(
     **given
         The axes by their names, arrays of SI values; without one a range of ``points`` = 100 values that shows the limits,
         or, of a scene without ``linear=``, where simulated contacts cease to come to rest.
-        And what :class:`WallMaps` takes: B, duration, x, v, unusable, unilateral, clamp, workers, engine.
+        And, for every point of the map: B, duration, x, v, unusable, unilateral, clamp, workers, engine.
 
     Returns
     -------

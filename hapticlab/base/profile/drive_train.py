@@ -116,11 +116,22 @@ class DriveTrain(ShowsItself):
         return None if self.rotor_inertia is None else self.rotor_inertia / self.jacobian**2
 
     def torque(self, force: ArrayLike) -> Array:
-        """Return the torque of the motor [N m] for a force at the handle [N], any shape."""
+        """Return the torque of the motor [N m] for a force at the handle [N], any shape.
+
+        Parameters
+        ----------
+        force : array_like
+            Force at the handle [N], any shape.
+        """
         return np.asarray(force, float) * self.jacobian
 
     def current(self, force: ArrayLike) -> Array:
         """Return the current [A] for a force at the handle [N], any shape; no more than the supply drives, where it is known.
+
+        Parameters
+        ----------
+        force : array_like
+            Force at the handle [N], any shape.
 
         Raises
         ------

@@ -12,6 +12,19 @@ from ..shows_itself import ShowsItself
 class Estimate(ShowsItself):
     """A constant and its confidence interval, in ``unit``; and where it comes from, if that is known.
 
+    Parameters
+    ----------
+    name : str
+        Of the constant, as a profile has it: "m", "b" ...
+    value : float
+        In ``unit``.
+    low, high : float
+        Ends of the interval, in ``unit``.
+    unit : str
+        SI unit, such as "kg".
+    source : str
+        Where it comes from; empty if that is not known.
+
     Examples
     --------
     >>> print(Estimate("m", 0.0301, 0.0297, 0.0305, "kg"))

@@ -175,7 +175,7 @@ class PaddleProfile(ShowsItself):
     def predict(self, question: Callable[..., Any], *args: Any, **options: Any) -> Prediction:
         """Return the interval of a prediction: over all ends of the intervals of the constants that it depends on.
 
-        Constants without an interval are taken as exact. See :class:`Prediction` for what the interval means.
+        Constants without an interval are taken as exact. The prediction's own docstring says what the interval means.
 
         Parameters
         ----------
@@ -213,6 +213,11 @@ class PaddleProfile(ShowsItself):
         """Write the profile to a JSON file and return its path (``.json`` is added where missing).
 
         ``hl.devices.profile("bench7.json")`` reads it. It contains what ``print`` shows and nothing of the computer.
+
+        Parameters
+        ----------
+        path : str or path
+            The file to write; one that is there is replaced.
         """
         return write_profile(self, path)
 

@@ -107,18 +107,35 @@ class Method(ShowsItself):
         return stability_region.longest_for(self)
 
     def longest_step(self, zeta=0.0):
-        """The largest stable omega h of q'' = -omega^2 q - 2 zeta omega q'; nan with damping that is refused."""
+        """The largest stable omega h of q'' = -omega^2 q - 2 zeta omega q'; nan with damping that is refused.
+
+        Parameters
+        ----------
+        zeta : float
+            Damping ratio, >= 0.
+        """
         return math.nan if zeta and self.order_with_velocity else stability_region.longest_for(self, zeta)
 
     def energy_gain(self, omega_h):
-        """The fraction of its energy that a spring-mass gains per step of omega h, in the long run."""
+        """The fraction of its energy that a spring-mass gains per step of omega h, in the long run.
+
+        Parameters
+        ----------
+        omega_h : float
+            Natural frequency times step [rad], > 0.
+        """
         return stability_region.energy_gain(self, omega_h)
 
     def amplification(self, z):
-        """|R(z)| of y' = lambda y, z = h lambda: at most 1 in the stability region.
+        """Magnitude of R(z) for y' = lambda y, z = h lambda: at most 1 in the stability region.
 
         Semi-implicit Euler and Verlet take first-order states by Euler and Heun, of which this is the region; what they
         do to a spring is in :meth:`longest_step`.
+
+        Parameters
+        ----------
+        z : complex or array
+            h lambda, without unit.
         """
         return stability_region.amplification(self, z)
 

@@ -73,7 +73,7 @@ def compile(
         Steps per period, >= 1.
     hold : {"zoh", "foh", "soh"}
         Or a record, as ``hl.methods.SecondOrderHold``. How an equation of motion sees x(t) and v(t) between samples
-        (see :class:`~hapticlab.compiler.tick.handle_samples.Handle`). It affects the accuracy more than the method
+        (see :class:`~hapticlab.methods.Hold`). It affects the accuracy more than the method
         does: with a held sample ("zoh") RK4 has an error of ten percent of the force.
     dtype : {"float32", "float64"}
         A board runs float32.
@@ -93,7 +93,7 @@ def compile(
     -------
     Program
         ``len(program)`` is its number of instructions per tick; printing it lists them. The same scene with the same
-        options gives the same object again, as :mod:`hapticlab.compiler.ir.cache` says.
+        options gives the same object again, unless many others were compiled since.
 
     Raises
     ------

@@ -166,7 +166,15 @@ class SerialPaddle(Paddle):
             return self.stop(ticks=ticks)
 
     def cost(self, scene: Scene | Program, **options: Any) -> Cost:
-        """The cost of a scene or a program on this board: cycles, memory, share of the period; print it."""
+        """The cost of a scene or a program on this board: cycles, memory, share of the period; print it.
+
+        Parameters
+        ----------
+        scene : Scene or Program
+            A scene with every parameter bound, or the program that was compiled from one.
+        **options
+            As for :func:`hapticlab.compile`: method, substeps, hold, dtype, live ...
+        """
         return cost(self.program(scene, **options), **self._board())
 
     def start(
@@ -183,6 +191,8 @@ class SerialPaddle(Paddle):
 
         Parameters
         ----------
+        scene : Scene or Program, optional
+            With every parameter bound; None starts the program that is on the board.
         every : int, optional
             One sample in so many ticks is sent; by default as many as the link carries.
         force_max : float
@@ -191,6 +201,8 @@ class SerialPaddle(Paddle):
             Watch the handle with the motor off; needs no home.
         check_fit : bool
             Refuse a scene that takes longer than the period before it is sent; the board itself faults on one anyway.
+        **options
+            As for :func:`hapticlab.compile`: method, substeps, hold, dtype, live ...
 
         Raises
         ------
@@ -213,6 +225,11 @@ class SerialPaddle(Paddle):
     def set(self, **values: float | str) -> None:
         """Set parameters of the scene on the board, live, all of them between the same two ticks.
 
+        Parameters
+        ----------
+        **values : float or text
+            Live parameters by name, in SI or with a unit; at most 8 at once.
+
         Raises
         ------
         ParameterError
@@ -231,6 +248,11 @@ class SerialPaddle(Paddle):
         """Let the scene run for a number of seconds of the board's time, or until a fault, which is reported.
 
         Interrupted, it switches the motor off; :meth:`stop` returns what was recorded until then.
+
+        Parameters
+        ----------
+        seconds : float or text
+            [s], > 0, or a text with its unit.
         """
         run = self._running()
         with guarded(self._motor_off):
@@ -239,7 +261,13 @@ class SerialPaddle(Paddle):
             print(f"{self.url}: {fault_words(run.fault, self.T)}")
 
     def stop(self, *, ticks: int | None = None) -> Telemetry:
-        """Switch the motor off and return the Telemetry of the run."""
+        """Switch the motor off and return the Telemetry of the run.
+
+        Parameters
+        ----------
+        ticks : int, optional
+            Number of ticks that the record is to end after; by default it ends with the last sample that came.
+        """
         with self._lock:
             run = self._running()
             self.exchange.beating = False  # first: whatever happens to STOP, the motor goes off
@@ -370,7 +398,19 @@ class SerialPaddle(Paddle):
     def fitted(
         self, scene: Scene | Program | None, every: int | None, check_fit: bool, options: dict[str, Any]
     ) -> Program | None:
-        """The program of a scene that fits the board, or None for the one that is there."""
+        """The program of a scene that fits the board, or None for the one that is there.
+
+        Parameters
+        ----------
+        scene : Scene, Program or None
+            None keeps the program that is on the board.
+        every : int or None
+            One sample in so many ticks is sent; None for as many as the link carries.
+        check_fit : bool
+            Whether a program that is too slow or too large for the board is rejected.
+        options : dict
+            Options of :func:`hapticlab.compile`.
+        """
         if scene is None:
             if self._loaded is None:
                 raise PaddleError("the board has no scene yet; give one: paddle.start(scene)")

@@ -133,7 +133,17 @@ class Hand(ShowsItself):
         return callable(self.intent)
 
     def samples(self, ticks: int, T: float, first: int = 0) -> Array:
-        """Return the intent at the ticks first ... first + ticks (one more than the ticks) [m], shape (ticks + 1,)."""
+        """Return the intent at the ticks first ... first + ticks (one more than the ticks) [m], shape (ticks + 1,).
+
+        Parameters
+        ----------
+        ticks : int
+            Ticks to come, >= 0.
+        T : float
+            Sampling period [s], > 0.
+        first : int
+            Number of the first tick, >= 0.
+        """
         times = np.arange(first, first + ticks + 1) * T
         assert callable(self.intent), "needed by a hand that moves"
         places = np.asarray(self.intent(times), float)

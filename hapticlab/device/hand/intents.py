@@ -91,7 +91,13 @@ class MinimumJerk(ShowsItself, Intent):
         return self.start + (self.end - self.start) * s**3 * (10 - 15 * s + 6 * s * s)
 
     def at(self, t: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return position [m], velocity [m/s] and acceleration [m/s^2] at times [s]."""
+        """Return position [m], velocity [m/s] and acceleration [m/s^2] at times [s].
+
+        Parameters
+        ----------
+        t : array_like
+            Times [s], any shape.
+        """
         s, mean = self._phase(t), (self.end - self.start) / self.duration
         return self(t), mean * 30 * (s * (1 - s)) ** 2, mean / self.duration * 60 * s * (1 - s) * (1 - 2 * s)
 

@@ -55,7 +55,7 @@ class Reacting(ShowsItself, Intent):
     Parameters
     ----------
     plan : callable
-        ``plan(t, seen, intent)`` gives the intent [m] at the time t [s]. ``seen`` (:class:`Seen`) has arrays t, x, v, F
+        ``plan(t, seen, intent)`` gives the intent [m] at the time t [s]. ``seen`` has arrays t, x, v, F
         and the watched states; empty at first. x is the handle itself, also under an encoder. ``intent`` is where the
         hand means to be now [m]: a plan that adds to it needs no memory of its own.
     reaction : float
@@ -111,7 +111,13 @@ class Reacting(ShowsItself, Intent):
         )
 
     def with_path(self, path: Callable[..., Any]) -> Reacting:
-        """Return this plan with an added path of time, such as :class:`Tremor`."""
+        """Return this plan with an added path of time, such as :class:`Tremor`.
+
+        Parameters
+        ----------
+        path : callable
+            Position added to the intent [m], as a function of an array of times [s].
+        """
         if isinstance(path, Reacting):
             raise PaddleError("this hand has two plans; give one Reacting(plan=...) that does the work of both.")
         return replace(self, beside=path if self.beside is None else Together((self.beside, path)))
@@ -119,7 +125,17 @@ class Reacting(ShowsItself, Intent):
     __add__ = __radd__ = with_path
 
     def asked(self, t: float, seen: Any, intent: Array) -> float:
-        """The plan's next intent [m], checked."""
+        """The plan's next intent [m], checked.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        seen : record
+            What the hand has seen so far: arrays t, x, v, F and the watched states.
+        intent : array
+            Intents asked for before [m].
+        """
         place: Any = self.plan(t, seen, intent)
         if not np.isscalar(place) or not np.isfinite(place):
             raise PaddleError(f"plan gave {place!r} at t = {t:g} s; needs one position [m].")

@@ -141,6 +141,13 @@ class TwoPaddles(ShowsItself):
         """Start both scenes, the left one first, and relay from then on until :meth:`stop`.
 
         In virtual time nothing moves but in :meth:`wait`. ``x`` and ``v`` are as for :meth:`run`.
+
+        Parameters
+        ----------
+        x : (float, float)
+            Positions of both handles at the start [m]; of simulated paddles alone.
+        v : (float, float)
+            Their velocities there [m/s].
         """
         if self._running:
             raise PaddleError("the pair runs already; end it first: pair.stop()")
@@ -166,6 +173,11 @@ class TwoPaddles(ShowsItself):
         """Let the pair run for so long [s], or until one side stops, which stops both and is reported.
 
         An interrupt switches both motors off; :meth:`stop` still returns what was recorded.
+
+        Parameters
+        ----------
+        seconds : float or text
+            [s], > 0, or a text with its unit.
         """
         seconds = number("seconds", seconds, "s", "a wait", least=0, error=PaddleError)
         self._require_run()
@@ -180,7 +192,13 @@ class TwoPaddles(ShowsItself):
             print(f"both motors are off. {self._fault}")
 
     def set(self, **values: float | str) -> None:
-        """Set parameters of both scenes, such as k and b, while they run or before."""
+        """Set parameters of both scenes, such as k and b, while they run or before.
+
+        Parameters
+        ----------
+        **values : float or text
+            Parameters by name, in SI or with a unit; both scenes get the same.
+        """
         for side in self._sides:
             side.source.check(**values)
         for side in self._sides:

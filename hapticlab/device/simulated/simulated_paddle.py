@@ -220,7 +220,15 @@ class SimulatedPaddle(Paddle):
 
     @classmethod
     def from_profile(cls, profile: PaddleProfile | File, **changes: Any) -> SimulatedPaddle:
-        """Return a paddle with the constants of a profile, or of its name or file: ``from_profile("eth", T=5e-4)``."""
+        """Return a paddle with the constants of a profile, or of its name or file: ``from_profile("eth", T=5e-4)``.
+
+        Parameters
+        ----------
+        profile : PaddleProfile, str or path
+            A profile, the name of one, such as "hapkit", or a file that :meth:`PaddleProfile.save` wrote.
+        **changes
+            Arguments of this class that are to differ from the profile, such as T [s] or hand.
+        """
         profile = named_profile(profile)
         own = {f.name for f in fields(cls)}
         known = {RENAMED.get(f.name, f.name): getattr(profile, f.name) for f in fields(PaddleProfile)}
@@ -288,7 +296,15 @@ class SimulatedPaddle(Paddle):
         return self.plant, encoder, self.noise > 0, self.force_max is not None, is_distorted(self), exact
 
     def plant_values(self, x: Number = 0.0, v: Number = 0.0) -> tuple[float, ...]:
-        """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""
+        """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s].
+
+        Parameters
+        ----------
+        x : float or text
+            Position of the handle at the start [m].
+        v : float or text
+            Its velocity there [m/s].
+        """
         start = number("x", x, "m", "a start", error=PaddleError), number("v", v, "m/s", "a start", error=PaddleError)
         return tuple(float(a) for a in (*device_values(self), *start))
 
@@ -296,6 +312,11 @@ class SimulatedPaddle(Paddle):
         """Return the linked program's inputs, shape (ticks, inputs).
 
         Intent [m], its rate [m/s], the sensor's noise [m], the hand's noise [N], each where the paddle has it.
+
+        Parameters
+        ----------
+        ticks : int
+            Samples of the run, >= 0.
         """
         columns = []
         if self.plant.ramp and self.hand is not None:

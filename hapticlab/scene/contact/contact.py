@@ -170,6 +170,11 @@ class Contact(ShowsItself, _InASum):
         """Generalized force of the contact along a coordinate q, or the handle x(t): force times dgap/dq.
 
         With friction in its impacts, the leaf ``rub`` along dslip/dq' too, zero at all other times.
+
+        Parameters
+        ----------
+        q : expression
+            A coordinate q(t), or the handle x(t).
         """
         along = Partial(self.gap, q)
         if self.is_force and not along.is_number:
@@ -278,7 +283,13 @@ class friction(ShowsItself, _InASum):
         return self.coulomb * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
 
     def generalized_force(self, q: sp.Expr) -> sp.Expr:
-        """Generalized force of the friction along a coordinate q, or the handle x(t): -force times dslip/dq'."""
+        """Generalized force of the friction along a coordinate q, or the handle x(t): -force times dslip/dq'.
+
+        Parameters
+        ----------
+        q : expression
+            A coordinate q(t), or the handle x(t).
+        """
         return -self.force * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
 
 

@@ -84,7 +84,15 @@ class impulse(ShowsItself, ContactLaw):
             object.__setattr__(self, "rest_speed", speed)
 
     def check(self, gap: sp.Expr, where: str) -> None:
-        """Refuse constants with a unit of their own."""
+        """Refuse constants with a unit of their own.
+
+        Parameters
+        ----------
+        gap : expression
+            The gap of the contact [m] or [rad].
+        where : str
+            Name of the contact, for the message.
+        """
         agree_with(self.e, "1", f"{where}, e")
         agree_with(self.mu, "1", f"{where}, mu")
 
@@ -128,7 +136,15 @@ class micro_impulse(ShowsItself, ContactLaw):
         object.__setattr__(self, "envelope", length)
 
     def check(self, gap: sp.Expr, where: str) -> None:
-        """Refuse constants with a unit of their own."""
+        """Refuse constants with a unit of their own.
+
+        Parameters
+        ----------
+        gap : expression
+            The gap of the contact [m] or [rad].
+        where : str
+            Name of the contact, for the message.
+        """
         agree_with(self.e, "1", f"{where}, e")
         agree([self.envelope, gap], f"{where}, envelope")
 
@@ -170,7 +186,15 @@ class rigid(ShowsItself, ContactLaw):
         take(self, mu="friction coefficient")
 
     def check(self, gap: sp.Expr, where: str) -> None:
-        """Refuse constants with a unit of their own."""
+        """Refuse constants with a unit of their own.
+
+        Parameters
+        ----------
+        gap : expression
+            The gap of the contact [m] or [rad].
+        where : str
+            Name of the contact, for the message.
+        """
         agree_with(self.mu, "1", f"{where}, mu")
 
 

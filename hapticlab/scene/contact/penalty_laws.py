@@ -51,18 +51,40 @@ class penalty(ShowsItself, ContactLaw):
         take(self, k="stiffness", b="damping")
 
     def check(self, gap: sp.Expr, where: str) -> None:
-        """Refuse constants whose units do not belong to the gap."""
+        """Refuse constants whose units do not belong to the gap.
+
+        Parameters
+        ----------
+        gap : expression
+            The gap of the contact [m] or [rad].
+        where : str
+            Name of the contact, for the message.
+        """
         _, stiffness, damping, _ = gap_units(gap, where)
         check_constant(self.k, stiffness, f"{where}, k")
         check_constant(self.b, damping, f"{where}, b")
 
     def force(self, gap: sp.Expr, rate: sp.Expr) -> sp.Expr:
-        """Normal force of a gap, <= 0, that changes at a rate."""
+        """Normal force of a gap, <= 0, that changes at a rate.
+
+        Parameters
+        ----------
+        gap : expression
+            [m], negative in overlap.
+        rate : expression
+            Rate of the gap [m/s], negative while the bodies approach.
+        """
         # a spring alone never pulls while the gap is closed, and a case less is half the work of method="taylor"
         return sp.Max(0, -self.k * gap - self.b * rate) if self.b != 0 else -self.k * gap
 
     def stored(self, gap: sp.Expr) -> sp.Expr:
-        """Energy in the spring."""
+        """Energy in the spring.
+
+        Parameters
+        ----------
+        gap : expression
+            [m], negative in overlap.
+        """
         return self.k * sp.Max(0, -gap) ** 2 / 2
 
     @staticmethod
@@ -70,6 +92,15 @@ class penalty(ShowsItself, ContactLaw):
         """Duration of a contact [s]: half a period, pi sqrt(m/k), whatever the speed.
 
         ``mass`` is the effective one of the contact, 1/W. A damper below critical makes it somewhat longer or shorter.
+
+        Parameters
+        ----------
+        k : float
+            Stiffness [N/m], > 0.
+        mass : float
+            Effective mass of the contact [kg], > 0.
+        speed : float, optional
+            Not used: the duration of a linear contact does not depend on it.
         """
         return math.pi * math.sqrt(mass / k)
 
@@ -114,7 +145,15 @@ class hunt_crossley(ShowsItself, ContactLaw):
         object.__setattr__(self, "exponent", exponent)
 
     def check(self, gap: sp.Expr, where: str) -> None:
-        """Refuse constants whose units do not belong to the gap."""
+        """Refuse constants whose units do not belong to the gap.
+
+        Parameters
+        ----------
+        gap : expression
+            The gap of the contact [m] or [rad].
+        where : str
+            Name of the contact, for the message.
+        """
         force, _, _, speed = gap_units(gap, where)
         if self.k.is_number:
             check_constant(self.k, f"{force}/{speed.removesuffix('/s')}^{float(self.exponent):g}", f"{where}, k")
@@ -124,7 +163,15 @@ class hunt_crossley(ShowsItself, ContactLaw):
         agree_with(1 / self.c if self.c != 0 else 0, speed, f"{where}, 1/c")
 
     def force(self, gap: sp.Expr, rate: sp.Expr) -> sp.Expr:
-        """Normal force of a gap that changes at a rate."""
+        """Normal force of a gap that changes at a rate.
+
+        Parameters
+        ----------
+        gap : expression
+            [m], negative in overlap.
+        rate : expression
+            Rate of the gap [m/s], negative while the bodies approach.
+        """
         # the factor alone is held at zero: where it is negative the contact would pull
         return self.k * sp.Max(0, -gap) ** self.exponent * sp.Max(0, 1 - self.c * rate)
 
@@ -132,6 +179,15 @@ class hunt_crossley(ShowsItself, ContactLaw):
         """Duration of an undamped contact at a speed [s]: 2 d/v int_0^1 dx/sqrt(1 - x^(n+1)), deepest at d.
 
         For n = 3/2, 2.943 d/v (Hertz; Johnson, *Contact Mechanics*, 1985, section 11.4): the faster the shorter.
+
+        Parameters
+        ----------
+        k : float
+            Stiffness [N/m^n], > 0.
+        mass : float
+            Effective mass of the contact [kg], > 0.
+        speed : float
+            Speed of approach [m/s], > 0.
 
         Examples
         --------
@@ -146,7 +202,13 @@ class hunt_crossley(ShowsItself, ContactLaw):
         return 2 * whole * deepest / speed
 
     def stored(self, gap: sp.Expr) -> sp.Expr:
-        """Energy in the spring."""
+        """Energy in the spring.
+
+        Parameters
+        ----------
+        gap : expression
+            [m], negative in overlap.
+        """
         return self.k * sp.Max(0, -gap) ** (self.exponent + 1) / (self.exponent + 1)
 
     @staticmethod
@@ -155,6 +217,11 @@ class hunt_crossley(ShowsItself, ContactLaw):
 
         From m v dv/dd = -k d^n (1 + c v), which separates: the energy of the entry and of the exit reach the same
         depth. Mass, stiffness and exponent cancel.
+
+        Parameters
+        ----------
+        cv : float or array
+            c times the speed of approach, without unit, >= 0.
 
         Examples
         --------

@@ -77,7 +77,13 @@ class Engagement(ShowsItself):
             self.amount_of(name)
 
     def amount_of(self, name: str) -> sp.Expr:
-        """One of these as a quantity of a scene."""
+        """One of these as a quantity of a scene.
+
+        Parameters
+        ----------
+        name : str
+            Name of one of the attributes of this record.
+        """
         return amount(getattr(self, name), UNITS[name], name, "a coupling", above=0)
 
 

@@ -39,14 +39,14 @@ def wall(
     law                     Eq.      spring force, with p = x - x_o
     ======================  =======  ====================================================
     ``zoh``                 (23.1)   k p(n)
-    ``half_sample``         (23.3)   k (p(n) + T/2 v(n)); v(n) is the paddle's velocity:
-                                     exact only in a simulated paddle without an encoder
+    ``half_sample``         (23.3)   k (p(n) + T/2 v(n))
     ``backward_difference`` (23.5)   k (1.5 p(n) - 0.5 p(n-1))
     ``ellis``               (23.7)   k (2 p(n) - 1.5 p(n-1) + 0.5 p(n-2))
     ======================  =======  ====================================================
 
-    With an encoder, or on a board, v(n) is estimated from positions, and ``half_sample`` is ``backward_difference``
-    unless ``velocity`` names another estimate. Eq. (23.2) with x(n+1) = x(n) + T v(n) is Eq. (23.3) with the same v.
+    v(n) is the paddle's velocity, which is exact only in a simulated paddle without an encoder. With an encoder, or on a
+    board, v(n) is estimated from positions, and ``half_sample`` is ``backward_difference`` unless ``velocity`` names
+    another estimate. Eq. (23.2) with x(n+1) = x(n) + T v(n) is Eq. (23.3) with the same v.
 
     The law predicts for the spring alone. The damper is B (p(n) - p(n-1))/T, the backward difference of the sensed
     position, whatever the law, unless ``velocity`` names another estimate.
@@ -180,7 +180,7 @@ def virtual_coupler(z: sp.Expr, *, K: Term, b: Term) -> sp.Expr:
     between samples as ``hold`` says. As the force that is felt it takes v(t) = v(n), the plain backward difference on a
     board, so the two sides differ by b a T/2, with a the acceleration of the handle: 0.036 % of K times 10 mm at
     K = 500 N/m, b = 1 N s/m, T = 1 ms and 10 mm at 3 Hz. Looking ahead in the force as well would close that gap to
-    0.007 % and ask for b more damping from the device (:class:`~hapticlab.compiler.tick.handle_samples.Handle`).
+    0.007 % and ask for b more damping from the device (:class:`~hapticlab.methods.Hold`).
 
     Parameters
     ----------
@@ -204,6 +204,11 @@ def virtual_coupler(z: sp.Expr, *, K: Term, b: Term) -> sp.Expr:
 
 def predicted_sample(signal: Callable[[sp.Expr], sp.Expr] = x) -> sp.Expr:
     """The next sample predicted from the last two, 2 x(n) - x(n-1), Eq. (23.4).
+
+    Parameters
+    ----------
+    signal : callable
+        The signal that is predicted, as a function of n: the handle's position ``x``, or a :func:`hapticlab.signal`.
 
     Examples
     --------

@@ -80,6 +80,11 @@ class VelocityEstimate(ShowsItself):
     def transfer(self, period: float) -> tuple[list[float], list[float]]:
         """(Numerator, denominator) in powers of 1/z, from positions [m] to the estimate [m/s], at T = period [s].
 
+        Parameters
+        ----------
+        period : float
+            Sampling period T [s], > 0.
+
         Raises
         ------
         SceneError

@@ -79,9 +79,9 @@ def proxy_curve(height: Callable[[sp.Expr], sp.Expr], *, load: Term, mu: Term = 
     height : callable z [m] -> expression [m]
         The curve h, of parameters, twice differentiable.
     load : Parameter or expression [N], > 0, or text
-        P; the spring must be the steeper, K > P max|h''|, or the proxy jumps (as over a detent, which may be meant).
+        P; the spring must be the steeper, ``K > P max|h''|``, or the proxy jumps (as over a detent, which may be meant).
     mu : number or Parameter, >= 0
-        Below 1/max|h'|: a steeper surface would jam.
+        Below ``1/max|h'|``: a steeper surface would jam.
     steps : int
         Newton steps a sample.
 

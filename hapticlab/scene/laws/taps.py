@@ -17,6 +17,8 @@ class SpringLaw(ShowsItself, str):
 
     Attributes
     ----------
+    name : str
+        The text that stands for it, ``law="ellis"``.
     taps : tuple of float
         Weights on x[n], x[n-1], x[n-2].
     says : str

@@ -17,6 +17,13 @@ from .written import expression
 class Amount(sp.Expr):
     """A fixed quantity in SI, such as 0.05 m; it compiles to its number.
 
+    Parameters
+    ----------
+    value : float
+        In SI.
+    unit : str
+        Its SI unit, such as "m" or "N*s/m".
+
     Examples
     --------
     >>> from hapticlab.scene.notation.amount import Amount

@@ -215,17 +215,28 @@ class v(_HandleSignal):
 
     In a force or a watched expression v(t) is the sample v(n), the plain backward difference on a board, while an
     equation of motion may see it half a period further on (see
-    :class:`~hapticlab.compiler.tick.handle_samples.Handle`). The two differ by a T/2, with a the acceleration of the
+    :class:`~hapticlab.methods.Hold`). The two differ by a T/2, with a the acceleration of the
     handle, on purpose: a force that predicts through a damper b needs b more device damping (2.29 instead of 1.29 N s/m
     at b = 1 N s/m). For a coupler the difference is 0.036 % of the force of its spring at 10 mm and 3 Hz (K = 500 N/m,
     b = 1 N s/m, T = 1 ms).
+
+    Parameters
+    ----------
+    argument : n, n - k or t
+        The sample, ``v(n)`` or one that lies k samples before it, or the time ``t`` in an equation of motion.
     """
 
     unit = "m/s"
 
 
 class x(_HandleSignal):
-    """Position of the handle x_e [m]: x(n) at the present sample, x(n-1) before it, x(t) in an equation of motion."""
+    """Position of the handle x_e [m]: x(n) at the present sample, x(n-1) before it, x(t) in an equation of motion.
+
+    Parameters
+    ----------
+    argument : n, n - k or t
+        The sample, ``x(n)`` or one that lies k samples before it, or the time ``t`` in an equation of motion.
+    """
 
     unit = "m"
 
@@ -243,6 +254,11 @@ class delay(sp.Function):
     """The value an expression had one sample ago; at the first sample, its present value.
 
     The delay of a number is the number. A condition has no delay: delay ``hl.when(condition, 1, 0)`` instead.
+
+    Parameters
+    ----------
+    argument : expression, number or text with a unit
+        What is delayed by one sample; delays may be nested.
 
     Examples
     --------

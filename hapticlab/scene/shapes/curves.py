@@ -74,7 +74,15 @@ class Curve(ShowsItself, Shape):
         return f"Curve({self.x}, {self.y})"
 
     def derivative(self, u: Any, order: int) -> Any:
-        """The point (x, y) [m] at u, or its derivative of an order."""
+        """The point (x, y) [m] at u, or its derivative of an order.
+
+        Parameters
+        ----------
+        u : number or expression
+            Parameter of the curve.
+        order : int
+            0 for the point itself, 1 for the first derivative with respect to u, and so on.
+        """
         return tuple(sp.diff(p, self.u, order).xreplace({self.u: u}) for p in (self.x, self.y))
 
 

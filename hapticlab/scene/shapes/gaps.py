@@ -87,7 +87,14 @@ def gap(a: Placed, b: Placed, *, method: str = "faces") -> sp.Expr:
 
 
 def closest(a: Placed, b: Placed, *, method: str = "faces") -> Any:
-    """The :class:`Closest` of two placed shapes: gap, normal and point; see :func:`gap`.
+    """Where two placed shapes are closest: gap, normal and point; see :func:`gap`.
+
+    Parameters
+    ----------
+    a, b : Placed
+        Two shapes in their places; the normal points from a to b.
+    method : str
+        As for :func:`gap`.
 
     Examples
     --------

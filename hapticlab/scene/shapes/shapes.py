@@ -98,6 +98,11 @@ class Circle(ShowsItself, Shape):
 class Box(ShowsItself, Shape):
     """Rectangle around its origin, ``width`` along x and ``height`` along y, each > 0 [m].
 
+    Parameters
+    ----------
+    width, height : number, text with a unit, or expression
+        Sides along x and along y [m], > 0.
+
     Examples
     --------
     >>> import hapticlab as hl
@@ -125,6 +130,13 @@ class Box(ShowsItself, Shape):
 class Capsule(ShowsItself, Shape):
     """Bar with round ends around its origin: a segment of ``length`` along x, widened by ``radius``; both > 0 [m].
 
+    Parameters
+    ----------
+    length : number, text with a unit, or expression
+        Of the segment along x [m], > 0.
+    radius : number, text with a unit, or expression
+        Of the round ends [m], > 0.
+
     Examples
     --------
     >>> import hapticlab as hl
@@ -150,6 +162,11 @@ class Segment(ShowsItself, Shape):
 
     Touched by a :class:`Circle` it has no inside: the distance is never negative. A body that passes it between two
     samples is on its other side; give it a thickness (:class:`Capsule`) where that can happen.
+
+    Parameters
+    ----------
+    length : number, text with a unit, or expression
+        Along x [m], > 0.
 
     Examples
     --------
@@ -233,6 +250,13 @@ class HalfPlane(ShowsItself, Shape):
 
 def ground(y: Term = 0, *, name: str = "ground") -> Placed:
     """The floor below a height y [m]: a :class:`HalfPlane` in its place.
+
+    Parameters
+    ----------
+    y : number, text with a unit, or expression
+        Height of the floor [m].
+    name : str
+        What messages and pictures call it.
 
     Examples
     --------
