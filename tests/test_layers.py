@@ -17,7 +17,9 @@ PACKAGE = Path(hapticlab.__file__).parent
 SETTINGS = PACKAGE.parent / "pyproject.toml"
 #: 300 lines are a question: is this one thing? Past 450 a module says here why it is: {"scene/module.py": "why"}.
 MODULE_LINES, FUNCTION_LINES = 450, 60
-LONG_FOR_A_REASON: dict[str, str] = {}
+LONG_FOR_A_REASON: dict[str, str] = {
+    "device/board/serial_paddle.py": "one class; 177 of its lines are docstrings, which say every argument",
+}
 #: modules in a folder, its __init__ left out
 FOLDER = 19
 # opens the compiler when a function needs it: what judges answers seldom does
