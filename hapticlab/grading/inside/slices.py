@@ -11,7 +11,7 @@ from functools import lru_cache
 
 from .cells import run_cell, runnable
 from .statement_effects import STATE, Reads, reads_of
-from .unchanging_names import BUILTINS, is_solid
+from .unchanging_names import BUILTINS, is_solid, makes_called
 
 #: of more the whole notebook runs at once: telling them apart would take longer
 MOST = 1000
@@ -129,7 +129,8 @@ def _merged(several):
 def _number(statements, found):
     """Give names their numbers, from which it follows which binding a statement reads; return the last ones.
 
-    A function reads when it is called, which may be after any later binding.
+    A function reads when it is called, which may be after any later binding. What a name was may be touched under the same
+    name later: the binding between may fail.
     """
     last = {}
     for one in found:
@@ -139,7 +140,8 @@ def _number(statements, found):
     for statement, one in zip(statements, found, strict=True):
         later = {(name, n) for name in one.later for n in range(count.get(name, 0), last.get(name, 0) + 1)}
         statement.reads = frozenset({(name, count.get(name, 0)) for name in one.now} | later)
-        statement.touches = frozenset(read for read in statement.reads if read[0] not in one.shown)
+        acted = ((name, n) for name, n in statement.reads if name not in one.shown)
+        statement.touches = frozenset((name, older) for name, n in acted for older in range(n + 1))
         statement.alters = frozenset(read for read in statement.reads if read[0] in one.alters)
         for name in one.rebinds:
             count[name] += 1
@@ -156,46 +158,67 @@ def _changing(statements, imports):
         for bound in statement.binds:
             binders.setdefault(bound, []).append(statement)
     solid = set(binders).difference(*(statement.sets for statement in statements))
+    makers = {bound: [node for one in several for node in one.nodes] for bound, several in binders.items()}
+    called = {bound for bound, nodes in makers.items() if all(makes_called(node, imports) for node in nodes)}
     while True:
         lost = {
             bound
             for bound in solid
             for statement in binders[bound]
-            if not _is_solid(statement, {read for read in statement.reads if read in binders}, solid, imports)
+            if not _is_solid(statement, {read for read in statement.reads if read in binders}, solid, called, imports)
         }
         if not lost:
             return set(binders) - solid
         solid -= lost
 
 
-def _is_solid(statement, reads, solid, imports):
+def _is_solid(statement, reads, solid, called, imports):
     """Return whether what a statement binds can only be bound anew; a function that uses what changes can change that."""
     if statement.later & (reads - solid | statement.alters):
         return False
-    names = {name for name, _ in reads & solid} - {name for name, _ in reads - solid}
+    names = _all_in(solid, reads) | {f"{name}()" for name in _all_in(solid & called, reads)}
     if not BUILTINS.isdisjoint(name for name, _ in reads):  # the notebook has one of its own
         return False
     return all(is_solid(node, names, imports) for node in statement.nodes)
 
 
+def _all_in(kept, reads):
+    """Return the names that are kept with each number under which they are read."""
+    return {name for name, _ in reads & kept} - {name for name, _ in reads - kept}
+
+
 def _closure(statements, wanted, changing):
-    """Return the places of the statements that belong to what is wanted."""
-    wanted, belongs, furthest, grown = wanted | {("<settings>", 0)}, set(), {}, True
+    """Return the places of the statements that belong to what is wanted at the end.
+
+    A name is wanted until a place. What runs only because a later statement of its cell needs it wants its names until it
+    runs; what happens to them afterwards does not belong.
+    """
+    end, grown = len(statements), True
+    values, objects = dict.fromkeys(wanted | {("<settings>", 0)}, end), {}  # name -> place until which it is wanted
+    belongs, furthest = {}, {}
     while grown:
         grown = False
         for place, one in reversed(list(enumerate(statements))):
-            stops = place < furthest.get(one.cell, 0) and not one.harmless
-            if place not in belongs and (stops or _belongs(one, wanted, changing)):
-                belongs.add(place)
-                furthest[one.cell] = max(place, furthest.get(one.cell, 0))
-                # under each name that it binds, what changes may be reached: all that happens to those belongs as well
-                wanted |= one.reads | (one.binds if _changes(one.reads | one.binds, changing) else set())
-                grown = True
+            changed = one.alters | {name for name in one.touches if _changes([name], changing)}
+            until = end if one.always else max(_latest(values, one.binds | changed), _latest(objects, changed))
+            runs = place < furthest.get(one.cell, 0) and not one.harmless
+            if max(until, place) <= belongs.get(place, -1) or not (until > place or runs):
+                continue
+            belongs[place], grown = max(until, place), True
+            furthest[one.cell] = max(place, furthest.get(one.cell, 0))
+            _want(values, one.reads, belongs[place])
+            if until > place and _changes(one.reads | one.binds, changing):
+                # what changes may be reached under each name that it binds: all that changes it there belongs as well
+                _want(objects, one.binds, until)
     return belongs
 
 
-def _belongs(one, wanted, changing):
-    return one.always or not wanted.isdisjoint(one.binds | one.alters) or _changes(one.touches & wanted, changing)
+def _latest(wanted, names):
+    return max((wanted.get(name, 0) for name in names), default=0)
+
+
+def _want(wanted, names, until):
+    wanted.update((name, max(until, wanted.get(name, 0))) for name in names)
 
 
 def _changes(names, changing):

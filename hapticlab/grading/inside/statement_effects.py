@@ -92,6 +92,7 @@ def reads_of(node):
         _read_part(part, found)
     found.opaque |= not OPAQUE_NAMES.isdisjoint(found.now | found.later)
     found.now |= {STATE[name] for name in found.now | found.later if name in STATE}
+    found.now -= _given_by_loop(node)
     found.rebinds -= found.now
     found.alters &= found.now | found.later
     found.opaque |= not SHOWING.isdisjoint(found.binds) or "hl" in found.alters  # what shows, or checks, does something else
@@ -133,6 +134,7 @@ def _read_code(code, found, later):
             reads.add(step.argval)
         elif kind in ("STORE", "DELETE") and (target == "GLOBAL" or (target == "NAME" and code.co_name == "<module>")):
             found.binds.add(step.argval)
+            reads.update({step.argval} if kind == "DELETE" else ())  # it fails where there is none
             if later:
                 found.later.add(step.argval)
                 found.sets.add(step.argval)
@@ -170,6 +172,17 @@ def _rebound(node):
         return set()
     parts = [part for target in node.targets for part in (target.elts if isinstance(target, ast.Tuple | ast.List) else [target])]
     return {part.id for part in parts if isinstance(part, ast.Name)}
+
+
+def _given_by_loop(node):
+    """Return the names that a loop reads only after it has bound them."""
+    if not isinstance(node, ast.For | ast.AsyncFor) or node.orelse:
+        return set()
+    targets = node.target.elts if isinstance(node.target, ast.Tuple) else [node.target]
+    names = {one.id for one in targets if isinstance(one, ast.Name)}
+    if len(names) < len(targets):
+        return set()
+    return names - {part.id for part in ast.walk(node.iter) if isinstance(part, ast.Name)}
 
 
 def _is_harmless(node):

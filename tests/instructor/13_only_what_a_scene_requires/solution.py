@@ -4,6 +4,7 @@ import numpy as np
 import sympy as sp
 
 import hapticlab as hl
+from hapticlab import n, t, x
 
 prediction_noticed = "CDE"
 prediction_saved = 60
@@ -45,15 +46,11 @@ def highest_frequency(m_1, m_2, k, weber):
     return (r_squared * k / m_2) ** 0.5 / (2 * np.pi)
 
 
-def _one_mass():
-    m_1, m_2 = hl.parameters("m_1 m_2", units="kg kg")
-    K, b_c = hl.parameters("K b_c", units="N/m N*s/m")
-    z = hl.coordinate("z", unit="m", initial=hl.x(hl.n))
-    F_c = hl.laws.virtual_coupler(z, K=K, b=b_c)
-    return hl.Scene(force=F_c, eom=[sp.Eq((m_1 + m_2) * z.diff(hl.t, 2), F_c)])
-
-
-rigid = _one_mass()(m_1=0.05, m_2=0.1, K=200, b_c=0.5)
+m_1, m_2 = hl.parameters("m_1 m_2", units="kg kg", values=(0.05, 0.1))
+K, b_c = hl.parameters("K b_c", units="N/m N*s/m", values=(200, 0.5))
+z = hl.coordinate("z", unit="m", initial=x(n))
+F_c = hl.laws.virtual_coupler(z, K=K, b=b_c)
+rigid = hl.Scene(force=F_c, eom=[sp.Eq((m_1 + m_2) * z.diff(t, 2), F_c)])
 hides = "c"
 discussion = (
     "I would send scene A without its tail, because the force is the same at every sample and two thirds of the cycles are free, "

@@ -11,22 +11,16 @@ prediction_gives = "B"
 prediction_rate = 500
 
 
-def _switch():
-    k, d, x_on, x_off = hl.parameters("k d x_on x_off", units="N/m m m m")
-    s = hl.signal("s", unit="1")
-    moves = hl.when(x(n) > x_on, 1, hl.when(x(n) < x_off, 0, s(n - 1)))
-    return hl.Scene(force=k * (x(n) - d * s(n)), eom=[sp.Eq(s(n), moves)], name="switch")
-
-
-def _gear():
-    k, F_c, g = hl.parameters("k F_c g", units="N/m N m")
-    h = hl.signal("h", unit="m", initial=x(n))
-    F, w = k * (sp.Max(x(n) - h(n) - g / 2, 0) + sp.Min(x(n) - h(n) + g / 2, 0)), g / 2 + F_c / k
-    return hl.Scene(force=F, eom=[sp.Eq(h(n), sp.Max(x(n) - w, sp.Min(x(n) + w, h(n - 1))))], name="gear")
-
-
-switch = _switch()
-gear = _gear()
+# under names of its own: the notebook has values for the paddle in use
+_k, _d, _x_on, _x_off = hl.parameters("k d x_on x_off", units="N/m m m m")
+_s = hl.signal("s", unit="1")
+_moves = hl.when(x(n) > _x_on, 1, hl.when(x(n) < _x_off, 0, _s(n - 1)))
+switch = hl.Scene(force=_k * (x(n) - _d * _s(n)), eom=[sp.Eq(_s(n), _moves)], name="switch")
+_F_c, _g = hl.parameters("F_c g", units="N m")
+_h = hl.signal("h", unit="m", initial=x(n))
+_F = _k * (sp.Max(x(n) - _h(n) - _g / 2, 0) + sp.Min(x(n) - _h(n) + _g / 2, 0))
+_w = _g / 2 + _F_c / _k
+gear = hl.Scene(force=_F, eom=[sp.Eq(_h(n), sp.Max(x(n) - _w, sp.Min(x(n) + _w, _h(n - 1))))], name="gear")
 
 
 def lost(k, d, x_on, x_off):
