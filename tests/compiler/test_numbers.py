@@ -172,7 +172,7 @@ VIBRATIONS = [(250, 20, 0, 0), (50, 1000, 1, 0), (247.3, 100, 2, 1)]
 @pytest.mark.parametrize("dtype, fine", [("float32", 1e-6), ("float64", 1e-14)])
 @pytest.mark.parametrize("hertz, seconds, live_roundings, folded_roundings", VIBRATIONS)
 @pytest.mark.parametrize("time", [t, n * T], ids=str)
-@pytest.mark.always("t-247.3-*", "T?n-50-*")
+@pytest.mark.always("t-*-float64-*", "T*n-*-float32-*")
 def test_a_vibration_keeps_its_phase(dtype, fine, hertz, seconds, live_roundings, folded_roundings, time):
     f = hl.parameters("f", units="Hz", values=hertz)
     ticks = 1000 * seconds

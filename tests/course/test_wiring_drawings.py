@@ -21,7 +21,7 @@ def level_words(axes, x, side):
     return {round(t.get_position()[1], 6): t.get_text() for t in axes.texts if abs(t.get_position()[0] - x - side * 0.15) < 1e-6}
 
 
-@pytest.mark.always("hapkit", "l298", "pico_as5048a")
+@pytest.mark.always("l298")
 @pytest.mark.parametrize("name", BUILDS)
 def test_every_wire_of_the_record_is_drawn_between_its_two_ends(name):
     (axes,) = hl.devices.drawing(f"wiring {name}").plot().axes

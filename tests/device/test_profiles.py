@@ -56,6 +56,7 @@ def test_nominal_settings_have_the_wiring_of_the_build(name):
 
 
 @pytest.mark.parametrize("name", PROFILES)
+@pytest.mark.always("hapkit_as5048a", "eth")
 def test_a_simulated_board_of_each_kind_gives_a_wall(name):
     """The firmware's core with its sensor and its drive; the handle stands where spring and hand balance."""
     with hl.connect(f"sim://{name}") as paddle:

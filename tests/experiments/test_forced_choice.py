@@ -49,6 +49,7 @@ def test_the_recorded_force_decides():
 
 @pytest.mark.parametrize("task", [QUICK, replace(damping_task(), duration=0.5), replace(texture_task(), duration=0.5)],
                          ids=lambda task: task.name)  # fmt: skip
+@pytest.mark.always("damping")
 def test_the_observers_weber_fraction_comes_back(task):
     observer = SimulatedObserver(weber=0.2, seed=2)
     found = forced_choice(PADDLE, task, observer, Psi(low=0.03, high=1.0, grid=Grid(slopes=(1.0,)), most_trials=25))

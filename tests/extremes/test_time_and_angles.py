@@ -105,6 +105,7 @@ def test_what_turns_like_a_motor_meets_the_limit_when_the_page_says(dtype, step)
 
 
 @pytest.mark.parametrize("lag", [1, 7, 300])
+@pytest.mark.always("[17]")
 def test_a_delay_of_many_samples_is_a_shift(lag):
     rng = np.random.default_rng(5)
     handle = rng.normal(size=lag + 20)

@@ -94,7 +94,7 @@ def test_the_filter_around_spring_and_damper(B):
 
 @pytest.mark.parametrize("law", ["zoh", "half_sample", "backward_difference", "ellis"])
 @pytest.mark.parametrize("velocity", ["measured", "backward_difference"])
-@pytest.mark.always("measured-half_sample", "measured-ellis", "*-zoh", "backward_difference-backward_difference")
+@pytest.mark.always("measured-ellis", "backward_difference-zoh")
 def test_a_wall_without_a_boundary_is_its_law(law, velocity):
     p = paddle(delay=0.3 * T, hand=SimpleNamespace(m=0.02, b=1.1, k=210.0), velocity=velocity)
     named = stability_limit(p, law=law, B=0.05)

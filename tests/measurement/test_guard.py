@@ -16,6 +16,7 @@ def run(paddle, **limits):
 
 
 @pytest.mark.parametrize("periods", [0, 1, 3])
+@pytest.mark.always("1")
 def test_the_energy_drawn_is_the_work_at_the_port(periods):
     """Against the energy of the record, which pairs forces and displacements by itself; F[n - d] acts from n to n + 1."""
     paddle = hl.SimulatedPaddle(m=0.05, b=0.0, T=T, delay=periods * T, hand=hl.Hand(push=1.0))

@@ -24,6 +24,8 @@ from .operations import OPERATIONS
 LEAVES = ("const", "param", "input", "state")
 REAL_TYPES = ("f32", "f64")
 TYPES = (*REAL_TYPES, "bool", "i32")
+#: as operations name their operands and results
+KINDS = {"f32": "R", "f64": "R", "bool": "B", "i32": "I"}
 NUMPY_TYPE = {"f32": np.float32, "f64": np.float64, "bool": np.bool_, "i32": np.int32}
 
 
@@ -264,11 +266,10 @@ def _problem(i, position, instructions, leaves):
         if not (isinstance(a, int) and 0 <= a < position):
             return f"operand {a} is not an earlier result"
     operand_types = [instructions[a].type for a in i.args]
-    kind_of = {"bool": "B", "i32": "I"}
-    if any(kind_of.get(t, "R") != k for t, k in zip(operand_types, kinds, strict=True)):
+    if "".join([KINDS[t] for t in operand_types]) != kinds:
         return f"takes {kinds}, was given {', '.join(operand_types)}"
     reals = {t for t in operand_types if t in REAL_TYPES}
-    if kind_of.get(i.type, "R") != result or len(reals) > 1:
+    if KINDS[i.type] != result or len(reals) > 1:
         return f"gives {i.type} from {', '.join(operand_types)}"
     if i.op == "cast":
         return None if reals != {i.type} else "casts a type to itself"

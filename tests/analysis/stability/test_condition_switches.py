@@ -38,6 +38,7 @@ def plain():
 
 
 @pytest.mark.parametrize("make", [two_stops, meeting, plain, hl.library.virtual_fixture, hl.library.texture])
+@pytest.mark.always("plain", "virtual_fixture", "texture")
 def test_a_switched_scene_is_the_scene_in_its_mode(make):
     """One Euler tick from every operating point: the same force and the same next states."""
     scene, known = make(), switched(make())

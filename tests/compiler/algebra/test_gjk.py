@@ -104,6 +104,7 @@ NEEDED = {2: 3, 3: 4, 4: 5, 8: 8, 16: 8, 32: 10}
 
 
 @pytest.mark.parametrize("corners", NEEDED)
+@pytest.mark.always("[2348]")
 def test_iterations_of_gjk(corners):
     generator = np.random.default_rng(corners)
     for flat in (1.0, 0.02):

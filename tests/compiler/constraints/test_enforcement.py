@@ -281,6 +281,7 @@ def test_a_rank_lost_by_a_live_parameter_turns_the_motor_off():
 
 
 @pytest.mark.parametrize("enforce", ["auto", "kkt", "numeric"])
+@pytest.mark.always("numeric")
 def test_a_support_that_time_moves(enforce):
     A, f, m, k = hl.parameters("A f m k", units="m Hz kg N/m", values=(0.01, 2.0, 0.1, 20.0))
     q, z = hl.coordinate("q", unit="m", rate=A * 2 * sp.pi * f), hl.coordinate("z", unit="m")

@@ -30,6 +30,7 @@ def compiled(scene, law=None):
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+@pytest.mark.always("rigid", "penalty")
 def test_bodies_in_each_other_at_the_start_are_refused(law):
     with pytest.raises(SceneError, match=r"top: gap = -h\(t\) is -0.04 m at the start: the bodies overlap\. .* its sign,"):
         compiled(scene(-h, law), law)

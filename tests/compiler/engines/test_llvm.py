@@ -121,6 +121,7 @@ def test_a_program_may_have_no_inputs_parameters_or_states():
 
 
 @pytest.mark.parametrize("size", [20, 300, 900])
+@pytest.mark.always("20", "300")
 def test_the_number_of_lanes_stepped_together_changes_no_bit(size):
     program = random_program(size, reals=("f64",), size=size)
     inputs, parameters = drive(program, size, 5, 70)
@@ -159,7 +160,7 @@ def test_engines_in_a_cycle_are_collected_code_first():
 
 @pytest.mark.parametrize("real", ["f32", "f64"])
 @pytest.mark.parametrize("count", [1, 2, 5, 9, 17])
-@pytest.mark.always("2-*", "9-f64")
+@pytest.mark.always("2-*")
 def test_functions_side_by_side_give_the_bits_of_one_alone(real, count):
     """Vectors of 1, 2, 8 and 8 + 1 or 16 + 1 lanes; a sine of a sine waits for it; one angle is asked for twice."""
 

@@ -200,6 +200,7 @@ def test_a_live_reading_gets_its_force_back_at_once():
 
 
 @pytest.mark.parametrize("F, at", [(0.5, 0.0), (1.32, 0.048), (1.32, -0.048)])
+@pytest.mark.always("1.32-0.048")
 def test_small_forces_and_a_handle_at_a_stop_may_stay(F, at):
     """0.5 N is what a motor of unknown sign may give for ever; at a stop nothing moves."""
     host = Host().ready(fixed(F), at=at)

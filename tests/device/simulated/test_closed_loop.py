@@ -53,6 +53,7 @@ def closed_loop(paddle, law, ticks, x, v):
 
 
 @pytest.mark.parametrize("delay", [0.0, 1e-3, 2e-3, 4e-4, 1.4e-3, 2.9e-3])
+@pytest.mark.always("0.001", "0.0014")
 def test_delay_against_located_events(delay):
     paddle = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, delay=delay, hand=HAND)
     log = paddle.run(WALL(k=300, x_o=0.001), duration=0.1, v=0.1, dtype="float64")

@@ -38,6 +38,7 @@ def in_pieces(stepping, ticks, pieces, path=push):
     ],
     ids=["plain", "encoder", "delay", "friction and noise", "limit", "sensor lag", "motor"],
 )
+@pytest.mark.always("plain", "encoder", "delay", "limit", "sensor lag", "motor")
 def test_pieces_are_bit_for_bit_one_run(more):
     hand = hl.Hand(m=0.02, b=1.0, k=200.0, push_noise=0.01, intent=push)
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hand, seed=3, **more)

@@ -103,6 +103,7 @@ def test_what_a_wrong_mass_leaves_of_the_speed(factor, periods):
 
 
 @pytest.mark.parametrize(("late", "part"), [(1, 1 / 4), (2, 4 / 27), (3, 27 / 256)])
+@pytest.mark.always("2-*")
 def test_delayed_friction_stops_with_a_part_of_the_mass_and_swings_with_all(late, part):
     """v(n+1) = v(n) - part v(n-d): its roots meet at d/(d+1) for that part, and lie on the unit circle or beyond for 1."""
     roots = np.roots([1, -1, *[0] * (late - 1), part])
