@@ -10,9 +10,9 @@ from .exits import USAGE, fitted
 #: group -> its commands, in the order in which people meet them
 GROUPS = {
     "Look and learn": ("demo", "labs"),
-    "Run a scene of your own": ("run", "tradeoff"),
+    "Run a scene of your own": ("run", "tradeoff", "share"),
     "With a paddle": ("guide", "ports", "doctor", "flash", "calibrate", "bench"),
-    "With a class": ("assign", "grade", "concepts"),
+    "With a class": ("assign", "grade", "concepts", "site", "wheels"),
 }
 BEGIN = """hapticlab: from an equation of motion to a felt virtual wall.
 

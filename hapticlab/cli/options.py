@@ -6,6 +6,7 @@ Nothing here opens SymPy or NumPy, so that `hapticlab -h` answers at once: each 
 
 import argparse
 import os
+import sys
 
 from .. import __version__
 from ..compiler.boards.board_records import BOARDS
@@ -20,6 +21,8 @@ STEPS = ("wiring", "stops", "sensor", "sign", "force")
 TROUBLES = ("motor wires", "wrong wiring", "loose wire", "sensor direction", "dead band")
 #: name -> page of docs/paddle, which comes with the package
 PAGES = {"owner": "owners_guide.md", "safety": "SAFETY.md", "faults": "faults.md", "card": "bring_up_card.md"}
+#: `hapticlab wheels --for`: systems, then their less common machines
+ROOM_SYSTEMS = ("windows", "macos", "linux", "windows-aarch64", "macos-x86_64", "linux-aarch64")
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
 LEVELS = ("auto", "namespaces", "user", "landlock", "none")
 #: of `hapticlab grade --memory` [MiB]: 16 TiB; systems take no more for a limit, and end each process where they are given more
@@ -45,6 +48,7 @@ def parser():
         one.add_argument("--paddle", metavar="PROFILE", help=words)
     _add_board_commands(commands, shared)
     _add_site(commands)
+    _add_wheels(commands)
     _add_guide(commands)
     made.commands = commands.choices
     return made
@@ -239,6 +243,23 @@ def _add_site(commands):
     made.add_argument("--wheel", metavar="FILE.whl", help="hapticlab for the site (default: made of this one)")
 
 
+def _add_wheels(commands):
+    text = "collect the wheels of hapticlab and of all that it needs in a folder, for a lab room without a network"
+    made = _add_command(commands, "cli.wheels.wheels", text)
+    made.add_argument(
+        "folder", metavar="FOLDER", help="new or empty folder, or one of an earlier call, whose wheels are replaced"
+    )
+    words = f"systems of the room: {', '.join(ROOM_SYSTEMS)} (default: {' '.join(ROOM_SYSTEMS[:3])})"
+    choices = {"choices": ROOM_SYSTEMS, "default": ROOM_SYSTEMS[:3], "metavar": "SYSTEM"}
+    made.add_argument("--for", dest="systems", nargs="+", help=words, **choices)
+    words = "its versions of Python, such as 3.12 (default: this one)"
+    here = (f"3.{sys.version_info.minor}",)
+    made.add_argument("--python", dest="pythons", type=_python, nargs="+", default=here, metavar="VERSION", help=words)
+    words = "extras of hapticlab; --extra alone takes none (default: notebook, which the labs need)"
+    made.add_argument("--extra", dest="extras", nargs="*", default=("notebook",), metavar="NAME", help=words)
+    made.add_argument("--wheel", metavar="FILE.whl", help="hapticlab for the room (default: made of this one)")
+
+
 def _add_guide(commands):
     text = "say where a page for owners of a paddle is: owner, safety, faults, or the card of the first power-up"
     made = _add_command(commands, "cli.guide.guide", text)
@@ -272,6 +293,13 @@ def _memory(text):
         words = f"give a whole number, 64 or greater, and {MOST_MEMORY} at most"
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of MiB; {words}")
     return int(text)
+
+
+def _python(text):
+    major, _, minor = text.partition(".")
+    if major != "3" or not minor.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a version of Python; give two numbers, such as 3.12")
+    return text
 
 
 def _amount(text):

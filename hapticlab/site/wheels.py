@@ -6,6 +6,7 @@ network, and of the very versions that were tested here.
 
 import base64
 import hashlib
+import itertools
 import os
 import subprocess
 import sys
@@ -70,31 +71,68 @@ def hapticlab_wheel(folder, given=None):
 
     It is made of a wheel, if that is given, else of this very hapticlab: installed, or a checkout.
     """
+    files = _own_files(given)
+    if failed := _put_libraries(files, [BROWSER]):
+        raise CourseError(
+            "this hapticlab has no core of the firmware for a browser, which sim:// and lab 00 need, and it did not "
+            f"compile: {failed[BROWSER]}. Do: pip install ziglang; or give a release of hapticlab by --wheel"
+        )
+    return write_wheel(folder, files)
+
+
+def wheel_for(folder, targets, given=None):
+    """Write hapticlab for some targets into a folder; return the wheel's path, and a sentence for each lacking library."""
+    files = _own_files(given)
+    if not any("/data/etc/" in path for path in files):  # pip puts Jupyter's setting outside the package
+        info = next(path for path in files if path.endswith(".dist-info/METADATA")).partition(".dist-info")[0]
+        files |= {f"{info}.data/data/{path}": content for path, content in _settings()}
+    lacking = [
+        f"{target}: the library of the firmware, which sim:// and the engine vm need; it did not compile. "
+        "Do: pip install ziglang, and the same command again; or give a release of hapticlab by --wheel"
+        for target in _put_libraries(files, targets)
+    ]
+    return write_wheel(folder, files), lacking
+
+
+def _settings():
+    """Yield Jupyter's setting of an installed hapticlab, by its path below the environment, and its content."""
+    for path in distribution("hapticlab").files or ():
+        if "etc" in path.parts and path.suffix == ".json":
+            yield "/".join(path.parts[path.parts.index("etc") :]), Path(path.locate()).read_bytes()
+
+
+def _own_files(given):
+    """Return the files of hapticlab by their paths in a wheel: of a given wheel, or of this very hapticlab."""
     if given is None and (PACKAGE.parent / "pyproject.toml").is_file():
         with tempfile.TemporaryDirectory() as aside:
-            files = zipped_files(_built(PACKAGE.parent, aside))
-    else:
-        files = installed_files("hapticlab", OWN) if given is None else zipped_files(given)
+            return zipped_files(_built(PACKAGE.parent, aside))
+    files = installed_files("hapticlab", OWN) if given is None else zipped_files(given)
     if "hapticlab/__init__.py" not in files:
         raise CourseError(f"{given} is not a wheel of hapticlab; give a file such as hapticlab-0.2.0-py3-none-any.whl")
-    kept = {path: content for path, content in files.items() if not path.startswith(OWN) or BROWSER in path}
-    for bits in toolchain.WORD_BITS:
-        path = f"{OWN}{BROWSER}/{toolchain.library_name(BROWSER, bits)}"
-        if toolchain.stamp(firmware_folder(), bits) not in kept.get(path, b""):
-            kept[path] = _library(bits)
-    return write_wheel(folder, kept)
+    return files
 
 
-def _library(bits):
-    """Return the firmware's core for a browser, compiled now."""
+def _put_libraries(files, targets):
+    """Keep the firmware's libraries of some targets alone, compile those that are not there; return why, by target, if not."""
+    for path in [path for path in files if path.startswith(OWN) and path.split("/")[2] not in targets]:
+        del files[path]
+    failed = {}
+    for target, bits in itertools.product(targets, toolchain.WORD_BITS):
+        path = f"{OWN}{target}/{toolchain.library_name(target, bits)}"
+        if toolchain.stamp(firmware_folder(), bits) not in files.get(path, b""):
+            try:
+                files[path] = _library(target, bits)
+            except toolchain.CompileError as problem:
+                files.pop(path, None)
+                failed[target] = problem
+    return failed
+
+
+def _library(target, bits):
+    """Return the firmware's library of a target, compiled now: by ziglang first, whose result older systems load too."""
     with tempfile.TemporaryDirectory() as aside:
-        try:
-            return toolchain.build_library(firmware_folder(), aside, BROWSER, bits).read_bytes()
-        except toolchain.CompileError as problem:
-            raise CourseError(
-                "this hapticlab has no core of the firmware for a browser, which sim:// and lab 00 need, and it did not "
-                f"compile: {problem}. Do: pip install ziglang; or give a release of hapticlab by --wheel"
-            ) from problem
+        tried = toolchain.compilers(target)[::-1]
+        return toolchain.build_library(firmware_folder(), aside, target, bits, tried=tried).read_bytes()
 
 
 def _built(checkout, folder):

@@ -720,6 +720,7 @@ def test_every_command_is_a_function_that_is_there():
             "calibrate",
             "bench",
             "site",
+            "wheels",
             "guide",
         ],
         True,

@@ -90,7 +90,7 @@ def small(install, tmp_path, monkeypatch):
 
 
 def test_the_browsers_library_is_compiled_where_a_wheel_has_none_of_these_sources(small, tmp_path, monkeypatch):
-    monkeypatch.setattr(wheels, "_library", lambda bits: f"compiled for {bits}".encode())
+    monkeypatch.setattr(wheels, "_library", lambda target, bits: f"compiled for {bits}".encode())
     browser = "emscripten-wasm32-32/libhapticlab_core"
     fresh = wheels.toolchain.stamp(wheels.firmware_folder(), 16).decode()
     given = small({"linux-x86_64/libhapticlab_core8.so": "code", f"{browser}8.so": "of older sources", f"{browser}16.so": fresh})
@@ -99,13 +99,13 @@ def test_the_browsers_library_is_compiled_where_a_wheel_has_none_of_these_source
     assert libraries == {f"{browser}8.so": b"compiled for 8", f"{browser}16.so": fresh.encode()}
 
 
-def test_without_a_compiler_the_cure_is_said(monkeypatch):
-    def refused(*_):
+def test_without_a_compiler_the_cure_is_said(small, tmp_path, monkeypatch):
+    def refused(*_, **__):
         raise wheels.toolchain.CompileError("no C compiler")
 
     monkeypatch.setattr(wheels.toolchain, "build_library", refused)
     with pytest.raises(CourseError, match="which sim:// and lab 00 need.* pip install ziglang; or give a release"):
-        wheels._library(8)
+        wheels.hapticlab_wheel(tmp_path, small({}))
 
 
 @pytest.mark.wide
