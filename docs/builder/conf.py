@@ -31,6 +31,8 @@ html_title = "hapticlab"
 html_favicon = "static/favicon.svg"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_js_files = [("site.js", {"defer": "defer"})]
+html_context = {"default_mode": "auto"}  # as the reader's system has it
 html_copy_source = html_show_sourcelink = False
 html_show_sphinx = False
 html_sidebars: dict[str, list[str]] = {"index": []}

@@ -93,12 +93,12 @@ def _run_block(found, name, page):
     first_line = page.text.count("\n", 0, found.start(1))
     printed = io.StringIO()
     try:
-        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(io.StringIO()), _views_noted() as views:
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(io.StringIO()), _noted() as (shown, views):
             last = _execute(ast.parse("\n" * first_line + found[1], name), name, page.names)
     except Exception as problem:
         line = _line(problem, name) or first_line + 1
         raise ExampleError(f"{name}, line {line}: {type(problem).__name__}: {problem}") from problem
-    made = [value for value in (*page.names.values(), last) if isinstance(value, Figure) and id(value) not in known]
+    made = [value for value in (*shown, *page.names.values(), last) if isinstance(value, Figure) and id(value) not in known]
     return Example(found[1], found.end(), printed.getvalue(), list(dict.fromkeys(made)), views)
 
 
@@ -122,16 +122,20 @@ def _line(problem, name):
 
 
 @contextlib.contextmanager
-def _views_noted():
-    """Note what ``hl.live`` is asked for, since a page shows a view as a file that the reader moves."""
-    opened, live = [], hl.live
+def _noted():
+    """Note what ``hl.show`` and ``hl.live`` are asked to show, since a page shows it in its own way."""
+    shown, opened, live, show = [], [], hl.live, hl.show
 
-    def noted(*given, **options):
+    def noted_live(*given, **options):
         opened.append((given, options))
         return live(*given, **options)
 
-    hl.live = noted
+    def noted_show(figure, *, alt):
+        figure.alt = alt
+        shown.append(figure)
+
+    hl.live, hl.show = noted_live, noted_show
     try:
-        yield opened
+        yield shown, opened
     finally:
-        hl.live = live
+        hl.live, hl.show = live, show
