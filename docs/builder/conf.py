@@ -30,6 +30,8 @@ html_theme = "pydata_sphinx_theme"
 html_title = "hapticlab"
 html_favicon = "static/favicon.svg"
 html_static_path = ["static"]
+html_extra_path = ["extra"]  # for addresses without a page
+templates_path = ["templates"]
 html_css_files = ["site.css"]
 html_js_files = [("site.js", {"defer": "defer"})]
 html_context = {"default_mode": "auto"}  # as the reader's system has it
@@ -42,6 +44,6 @@ html_theme_options = {
     "navigation_with_keys": False,
     "show_toc_level": 2,
     "footer_start": ["copyright"],
-    "footer_end": [],
+    "footer_end": ["licences"],
 }
 html_last_updated_fmt = None

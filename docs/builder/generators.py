@@ -1,6 +1,10 @@
 """What writes pages: each function gets the folder of the copied sources and writes Markdown, or HTML for ``live/``, into it."""
 
-from . import from_the_root, glossary
+from . import from_the_root, glossary, licences
 
 #: called in this order, before the examples run; a later one may read what an earlier one wrote
-GENERATORS = (from_the_root.write, glossary.write)
+GENERATORS = (
+    from_the_root.write,
+    glossary.write,
+    licences.write,
+)

@@ -13,6 +13,7 @@ from . import check, outcomes
 from .examples import ExampleError
 from .frames import LIVE
 from .generators import GENERATORS
+from .licences import without_a_part
 
 DOCS = Path(__file__).resolve().parents[1]
 HERE = Path(__file__).resolve().parent
@@ -76,8 +77,11 @@ def build(folder, *, quick=False, labs=False, pyodide=None, say=print):
             _embed_labs(made / "labs_in_browser", pyodide, say)
             clock.say("the labs in a browser")
         counted = check.look_through(made)
-        if counted.wrong:
-            raise BuildError("\n".join(counted.wrong))
+        static = made / "_static"
+        shipped = [path.relative_to(static).as_posix() for path in static.rglob("*") if path.is_file()]
+        wrong = counted.wrong + [f"_static/{name} has no licence in licences.py" for name in without_a_part(shipped)]
+        if wrong:
+            raise BuildError("\n".join(wrong))
         clock.say(f"{counted.pages} pages with {counted.words} words and {counted.links} links, all of which lead somewhere")
         (made / MARK).touch()
         (made / ".nojekyll").touch()  # GitHub's pages would leave out folders that begin with an underscore
