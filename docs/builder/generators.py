@@ -1,10 +1,11 @@
 """What writes pages: each function gets the folder of the copied sources and writes Markdown, or HTML for ``live/``, into it."""
 
-from . import from_the_root, glossary, licences
+from . import from_the_root, glossary, licences, sections
 
 #: called in this order, before the examples run; a later one may read what an earlier one wrote
 GENERATORS = (
     from_the_root.write,
     glossary.write,
     licences.write,
+    sections.write,
 )
