@@ -45,7 +45,7 @@ PARTS = (
     ), package="sphinx"),
     Part("Snowball, which finds the stems of words", ("*-stemmer.js",), package="snowballstemmer"),
     Part("Pygments, whose styles colour code", ("pygments.css",), package="pygments"),
-    Part("PyData Sphinx Theme", ("webpack-macros.html", "styles/*", "scripts/pydata-sphinx-theme.js*"), package="pydata-sphinx-theme"),
+    Part("PyData Sphinx Theme", ("*.html", "styles/*", "scripts/pydata-sphinx-theme.js*"), package="pydata-sphinx-theme"),
     Part("Bootstrap", ("scripts/bootstrap.js*",), holder="Copyright (c) 2011-2024 The Bootstrap Authors", texts=("mit.txt",)),
     Part(
         "Font Awesome Free",

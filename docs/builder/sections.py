@@ -7,7 +7,7 @@ TITLE = re.compile(r"^# (.+)$", re.M)
 
 
 def write(source):
-    """Add to the ``index.md`` of each folder its pages, in the order of the list."""
+    """Add to the ``index.md`` of each folder those pages that its own contents do not list, in the order of the list."""
     listed = {}
     for page, question in ROW.findall((source / "README.md").read_text("utf-8")):
         folder, _, name = page.rpartition("/")
@@ -15,8 +15,10 @@ def write(source):
             listed.setdefault(folder, []).append((name, _title(source / page), question))
     for folder, pages in listed.items():
         index = source / folder / "index.md"
-        if index.is_file():
-            index.write_text(f"{index.read_text('utf-8')}\n{contents(pages)}", "utf-8")
+        text = index.read_text("utf-8") if index.is_file() else None
+        if text and (left := [page for page in pages if page[0].removesuffix(".md") not in text.splitlines()]):
+            own, mark, others = text.partition("```{toctree}")
+            index.write_text(f"{own.rstrip()}\n\n{contents(left)}\n{mark}{others}", "utf-8")
 
 
 def contents(pages):
