@@ -173,6 +173,9 @@ def test_a_page_runs_in_a_low_frame_without_its_own_origin(browser, files):
     for key in ("r", "ArrowRight", "s"):
         frame.locator(".hl-stage").press(key)
     expect(frame.locator(".hl-status")).to_contain_text("if the page around this frame allows downloads")
+    for theme, paper in (("dark", "rgb(22, 22, 22)"), ("none", "rgb(22, 22, 22)"), ("light", "rgb(255, 255, 255)")):
+        page.evaluate("(theme) => document.querySelector('iframe').contentWindow.postMessage({ theme }, '*')", theme)
+        expect(frame.locator("body")).to_have_css("background-color", paper)
     page.close()
 
 

@@ -24,4 +24,12 @@ async function begin(told, place) {
   }
 }
 
-if (typeof document !== "undefined") begin(JSON.parse(document.getElementById("hl-data").textContent), document.getElementById("hl-view"))
+// A page that shows this one in a frame says whether it is light or dark; what else it says is not heard.
+function followTheme({ source, data }) {
+  if (source === parent && ["light", "dark"].includes(data?.theme)) document.documentElement.style.colorScheme = data.theme
+}
+
+if (typeof document !== "undefined") {
+  window.addEventListener("message", followTheme)
+  begin(JSON.parse(document.getElementById("hl-data").textContent), document.getElementById("hl-view"))
+}
