@@ -11,8 +11,9 @@ Labs: 16
 * `F_c=0.5N`: A load with more friction: each flank is harder to push.
 """
 
-import hapticlab as hl
 import sympy as sp
+
+import hapticlab as hl
 from hapticlab import n, x
 
 k, F_c, g = hl.parameters("k F_c g", units="N/m N m", values=(150, 0.2, 4e-3))

@@ -11,8 +11,9 @@ Labs: 16
 * `x_off=2mm`: The switch comes up much later. The loop of force over position becomes wide, and you lose more energy.
 """
 
-import hapticlab as hl
 import sympy as sp
+
+import hapticlab as hl
 from hapticlab import n, x
 
 k, d = hl.parameters("k d", units="N/m m", values=(150, 3e-3))

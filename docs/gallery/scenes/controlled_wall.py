@@ -13,7 +13,7 @@ Labs: 05, 15
 
 import hapticlab as hl
 
-scene = hl.laws.passivity_controller(hl.wall())(k=4000, x_o="5 mm")
+scene = hl.laws.passivity_controller(hl.wall())(k=4000, x_o="5 mm", alpha_max=2)
 
 paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 hl.share(scene, paddle, "controlled_wall.html", sliders={"k": (100, 5000)})

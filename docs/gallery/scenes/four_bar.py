@@ -2,7 +2,8 @@
 
 A crank that turns fully swings a rocker. The mass that the handle feels depends on the position.
 
-* `J_4=8e-4kg*m^2`: Four times the inertia of the rocker: the mass is felt where the rocker runs, and vanishes where the rocker turns round.
+* `J_4=8e-4kg*m^2`: Four times the inertia of the rocker: the mass is felt where the rocker runs, and almost
+  vanishes where the rocker turns round.
 * `B=1e-3N*m*s/rad`: With more friction in the joint the linkage stops sooner.
 """
 

@@ -10,8 +10,9 @@ Labs: 16
 * `x_set=20mm`: The latch is farther away.
 """
 
-import hapticlab as hl
 import sympy as sp
+
+import hapticlab as hl
 from hapticlab import n, x
 
 K, x_set, F_max = hl.parameters("K x_set F_max", units="N/m m N", values=(150, 10e-3, 3.0))

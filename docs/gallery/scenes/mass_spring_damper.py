@@ -3,7 +3,7 @@
 Slowly, the handle feels a spring. Faster, it feels the resonance of the body, and then a mass.
 
 * `k=400N/m`: Four times the stiffness doubles the natural frequency of the body on its own spring, from 5 Hz to 10 Hz.
-* `b=2N*s/m`: The damping ratio rises from 0.02 to 0.32, so the ringing after a knock ends at once.
+* `b=2N*s/m`: The damping ratio rises from 0.02 to 0.32, so the ringing after a knock ends sooner.
 * `m=0.4kg`: Four times the mass halves the natural frequency. The handle feels heavier when you shake it.
 """
 

@@ -11,8 +11,9 @@ Labs: 16
 * `tau=2s`: A body that takes four times as long to warm up: the heater switches a quarter as often.
 """
 
-import hapticlab as hl
 import sympy as sp
+
+import hapticlab as hl
 from hapticlab import n, t
 
 theta = hl.coordinate("theta", unit="K", initial=20)  # above the room

@@ -1,0 +1,104 @@
+"""What the cells of an untouched lab print, show and open, as a notebook has it, in a process of its own."""
+
+import contextlib
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+#: what a page can show, the richest first
+KINDS = ("text/markdown", "text/html", "text/plain")
+VIEW = "application/vnd.jupyter.widget-view+json"
+
+
+@dataclass
+class Outcome:
+    """What one cell did.
+
+    Attributes
+    ----------
+    printed : str
+    shown : list of (kind, text)
+    files : list of str
+        Texts of shared files, one for each live view.
+    """
+
+    printed: str = ""
+    shown: list = field(default_factory=list)
+    files: list = field(default_factory=list)
+
+
+def outcomes(sources):
+    """Run cells of a notebook one after another in a temporary folder, and return the outcome of each.
+
+    Parameters
+    ----------
+    sources : list of str
+
+    Raises
+    ------
+    Exception
+        What a cell raised.
+    """
+    from IPython.core.displayhook import CapturingDisplayHook
+    from IPython.core.displaypub import CapturingDisplayPublisher
+    from IPython.core.interactiveshell import InteractiveShell
+    from IPython.utils.capture import capture_output
+
+    shell = InteractiveShell.instance()
+    shell.display_formatter.active_types = [*KINDS]  # as a notebook, not as a terminal
+    found = []
+    try:
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), views() as opened:
+            for source in sources:
+                shell.display_pub, outputs = CapturingDisplayPublisher(), []
+                shell.display_trap.hook = CapturingDisplayHook(shell, outputs)
+                with capture_output(stdout=True, stderr=True, display=False) as text:
+                    shell.run_cell(source).raise_error()
+                every = [*shell.display_pub.outputs, *outputs]
+                found.append(Outcome(text.stdout, [one for each in every for one in richest(each["data"])], [*opened]))
+                opened.clear()
+    finally:
+        InteractiveShell.clear_instance()
+    return found
+
+
+def richest(data):
+    """Yield the richest form of an output that a page can show; nothing of a live view, which becomes a frame.
+
+    Examples
+    --------
+    >>> list(richest({"text/plain": "4", "text/html": "<b>4</b>"}))
+    [('text/html', '<b>4</b>')]
+    """
+    if VIEW not in data:
+        yield from [(kind, data[kind]) for kind in KINDS if kind in data][:1]
+
+
+@contextlib.contextmanager
+def views():
+    """Have ``hl.live`` also write each view as a shared file, into the list that is given."""
+    import hapticlab as hl
+
+    opened, live = [], hl.live
+
+    def shared(paddle, scene, **options):
+        kept = {name: value for name, value in options.items() if name not in ("rehearsal", "plain")}
+        with contextlib.suppress(hl.HapticlabError):  # a board, or a scene that a page cannot draw: the page shows the code alone
+            opened.append(hl.share(scene, paddle, "view.html", **kept).path.read_text("utf-8"))
+        return live(paddle, scene, **options)
+
+    hl.live = shared
+    try:
+        yield opened
+    finally:
+        hl.live = live
+
+
+def of_notebook(path):
+    """Return the outcomes of a notebook by the id of each cell; for a process of its own."""
+    from hapticlab.course.notebook import read
+
+    cells = [cell for cell in read(path)["cells"] if cell["cell_type"] == "code"]
+    sys.path.insert(0, str(Path(path).parent))
+    return dict(zip([cell["id"] for cell in cells], outcomes(["".join(cell["source"]) for cell in cells]), strict=True))
