@@ -16,7 +16,7 @@ def frame(name: str, html: str, *, folder: Path, page: str, title: str, address:
     Parameters
     ----------
     name : str
-        Of the file, without its ending. A second frame of the same name shows the same file.
+        Of the file, without its ending, and of the frame, so that ``<a target=name>`` gives it other values.
     html : str
         Text of the shared file.
     folder : Path
@@ -33,7 +33,7 @@ def frame(name: str, html: str, *, folder: Path, page: str, title: str, address:
     >>> import tempfile
     >>> made = frame("wall", "<p>...", folder=Path(tempfile.mkdtemp()), page="gallery/wall", title="A wall")
     >>> made.splitlines()[1][:74]
-    '<iframe src="../live/wall.html" title="A wall" loading="lazy" sandbox="all'
+    '<iframe name="wall" src="../live/wall.html" title="A wall" loading="lazy" '
     """
     path = Path(folder, LIVE, f"{name}.html")
     path.parent.mkdir(exist_ok=True)
@@ -42,6 +42,6 @@ def frame(name: str, html: str, *, folder: Path, page: str, title: str, address:
     path.write_text(html, "utf-8", newline="\n")
     link = escape(f"{'../' * page.count('/')}{LIVE}/{name}.html{address}")
     return f"""<div class="hl-frame">
-<iframe src="{link}" title="{escape(title)}" loading="lazy" sandbox="allow-scripts allow-downloads"></iframe>
+<iframe name="{name}" src="{link}" title="{escape(title)}" loading="lazy" sandbox="allow-scripts allow-downloads"></iframe>
 <p><a href="{link}">Open alone</a></p>
 </div>"""

@@ -11,11 +11,14 @@ from textwrap import dedent
 import hapticlab as hl
 from hapticlab.compiler.boards.cost import cost
 
+from .examples import ExampleError
 from .frames import frame
 from .library_code import library_code
 
 REPOSITORY = Path(__file__).parents[2]
 SCENES = Path("gallery", "scenes")
+#: the scene of the front page
+FIRST = "wall"
 BOARDS = {"uno": "Arduino Uno", "pico": "Raspberry Pi Pico", "cortex-m4f": "Cortex-M4F at 168 MHz"}
 #: what is tried on a board where the library names nothing: the method that hl.compile chooses, then the cheapest
 TRIED = ({}, {"method": "semi_implicit_euler"})
@@ -113,7 +116,7 @@ class Source:
     @property
     def entry(self):
         """The entry of the library, or None."""
-        return hl.library.catalogue.get(self.name)
+        return dict(hl.library.catalogue).get(self.name)
 
 
 def sources(folder):
@@ -136,7 +139,10 @@ def run(source):
 def page(source, scene, live):
     """Return the Markdown of a scene's page; ``live`` is the HTML of its frame."""
     docname = f"../live/{source.name}.html"
-    changes = [f'* <a href="{docname}#{address}">{address.replace(";", "; ")}</a>: {w}' for address, w in source.changes.items()]
+    changes = [
+        f'* <a href="{docname}#{address}" target="{source.name}">{address.replace(";", "; ")}</a>: {w}'
+        for address, w in source.changes.items()
+    ]
     units = {name: "" if one.unit == "1" else f" {one.unit}" for name, one in scene.parameters.items()}
     values = [f"`{name}` = {value:g}{units[name]}" for name, value in scene.values.items()]
     return PAGE.format(
@@ -149,14 +155,14 @@ def page(source, scene, live):
 
 def code(source, scene):
     """Return what a reader types, and for a scene of the library its equations written out, which give the same scene."""
-    shown = f"```python\n{source.code}\n```\n"
+    shown = f"```py\n{source.code}\n```\n"
     if source.entry is None:
         return shown
     written, names = library_code(source.entry.scene), {}
     exec(written, names)
     if names["scene"] != scene:
         raise ValueError("the code that the page writes out does not give the scene of the library")
-    return f"{shown}\nThe same scene, written out:\n\n```python\n{written}\n```\n"
+    return f"{shown}\nThe same scene, written out:\n\n```py\n{written}\n```\n"
 
 
 def teaches(source):
@@ -209,36 +215,41 @@ def labs(source):
     return f"In the labs: {', '.join(links)}." if links else ""
 
 
-def card(source):
-    """Return a card of the index."""
+def card(source, plain=False):
+    """Return a card of the index, without its picture where it is ``plain``."""
+    picture = "" if plain else f":img-top: images/{source.name}.svg\n"
     return f""":::{{grid-item-card}} {source.title}
 :link: {source.name}
 :link-type: doc
-:img-top: images/{source.name}.svg
-
+{picture}
 {source.summary}
 :::"""
 
 
-def index(found):
+def index(found, plain=False):
     """Return the Markdown of the page of cards."""
-    grids = [[card(one) for one in found.values() if bool(one.entry) is of_library] for of_library in (True, False)]
+    grids = [[card(one, plain) for one in found.values() if bool(one.entry) is of_library] for of_library in (True, False)]
     library, own = ("::::{grid} 1 2 3 3\n:gutter: 3\n\n" + "\n".join(cards) + "\n::::" for cards in grids)
     return INDEX.format(library=library, own=own, pages="\n".join(found))
 
 
-def write_gallery(source: Path, only: str | None = None) -> None:
-    """Write the pages of all scenes, or of one of them, and their cards."""
-    folder = Path(source, "gallery")
-    found = sources(source / SCENES)
-    found = {name: one for name, one in found.items() if only in (None, name)}
-    (folder / "images").mkdir(parents=True, exist_ok=True)
+def write(source: Path, quick: bool = False) -> None:
+    """Write the pages of all scenes and their cards; where ``quick``, run the scene of the front page alone."""
+    folder, found = Path(source, "gallery"), sources(source / SCENES)
+    (folder / "images").mkdir(exist_ok=True)
     for name, one in found.items():
         try:
-            scene, html = run(one)
-            live = frame(name, html, folder=source, page=f"gallery/{name}", title=f"{one.title}: a scene to move")
-            (folder / f"{name}.md").write_text(page(one, scene, live), "utf-8")
-            hl.mechanics.picture(scene).savefig(folder / "images" / f"{name}.svg")
+            text = f"# {one.title}\n\n{one.words}\n" if quick and name != FIRST else _page_that_ran(one, folder)
         except Exception as problem:
-            raise RuntimeError(f"gallery/scenes/{name}.py: {type(problem).__name__}: {problem}") from problem
-    (folder / "index.md").write_text(index(found), "utf-8")
+            raise ExampleError(f"docs/gallery/scenes/{name}.py: {type(problem).__name__}: {problem}") from problem
+        (folder / f"{name}.md").write_text(text, "utf-8")
+    (folder / "index.md").write_text(index(found, quick), "utf-8")
+
+
+def _page_that_ran(source, folder):
+    """Run a scene, write its picture and its frame, and return its page."""
+    scene, html = run(source)
+    title = f"{source.title}: a scene to move"
+    live = frame(source.name, html, folder=folder.parent, page=f"gallery/{source.name}", title=title)
+    hl.mechanics.picture(scene).savefig(folder / "images" / f"{source.name}.svg", metadata={"Date": None})
+    return page(source, scene, live)

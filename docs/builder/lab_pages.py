@@ -20,7 +20,7 @@ TABLE_ROW = re.compile(r"^\| (\d\d) ([^|]+?) \|", re.MULTILINE)
 HEAD = """:::{{admonition}} To work on this lab
 :class: tip
 
-{browser}Run `hapticlab labs my-labs`, which copies all labs and opens JupyterLab. You can also
+{browser} `hapticlab labs my-labs`, which copies all labs and opens JupyterLab. You can also
 {{download}}`download this notebook <{name}.ipynb>`.
 
 This page shows the lab as you receive it: the answers are yours to find. Its outputs come from a simulated paddle with nominal
@@ -36,7 +36,7 @@ INDEX = """
 """
 
 
-def page(name, cells, outcomes, frames, browser=""):
+def page(name, cells, outcomes, frames, browser="Run"):
     """Return the Markdown of a lab.
 
     Parameters
@@ -49,7 +49,7 @@ def page(name, cells, outcomes, frames, browser=""):
     frames : callable (number, html) -> str
         Makes the frame of a live view.
     browser : str
-        Sentence with a link to the lab in a browser; nothing where the build has none.
+        Beginning of the sentence on how to open the labs, with a link to the labs in a browser where the build has them.
     """
     title, rest = "".join(cells[0]["source"]).split("\n", 1)
     parts = [title, HEAD.format(name=name, browser=browser), rest.strip()]
@@ -92,16 +92,19 @@ def index(readme, names):
     return linked + INDEX.format(pages="\n".join(names))
 
 
-def write_labs(source: Path, only: tuple = ()) -> None:
-    """Write the pages of all labs, or of some by their numbers, and the index of all."""
-    folder, labs = Path(source, "labs"), [lab for lab in find_labs(LABS) if not only or lab.number in only]
-    folder.mkdir(exist_ok=True)
+def write(source: Path, quick: bool = False) -> None:
+    """Write the pages of all labs and their index; where ``quick``, run none of them."""
+    folder, labs = Path(source, "labs"), find_labs(LABS)
+    folder.mkdir()
+    browser = (
+        f'<a href="../{IN_BROWSER}/index.html">Open the labs in your browser</a>, or run'
+        if (source / IN_BROWSER).is_dir()
+        else "Run"
+    )
     with ProcessPoolExecutor(PROCESSES, multiprocessing.get_context("spawn")) as pool:
-        found = pool.map(of_notebook, [lab.notebook for lab in labs])
+        found = [{}] * len(labs) if quick else pool.map(of_notebook, [lab.notebook for lab in labs])
         for lab, outcomes in zip(labs, found, strict=True):
-            frames = _frames(lab.name, source)
-            browser = f"[Open it in the browser](../{IN_BROWSER}/index.html), or " if (source / IN_BROWSER).is_dir() else ""
-            text = page(lab.name, read(lab.notebook)["cells"], outcomes, frames, browser)
+            text = page(lab.name, read(lab.notebook)["cells"], outcomes, _frames(lab.name, source), browser)
             (folder / f"{lab.name}.md").write_text(text, "utf-8")
             shutil.copy(lab.notebook, folder)
     (folder / "index.md").write_text(index((LABS / "README.md").read_text("utf-8"), [lab.name for lab in labs]), "utf-8")

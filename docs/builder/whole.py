@@ -12,7 +12,8 @@ from pathlib import Path
 from . import check, outcomes
 from .examples import ExampleError
 from .frames import LIVE
-from .generators import GENERATORS
+from .generators import GENERATORS, LONG
+from .lab_pages import IN_BROWSER
 from .licences import without_a_part
 
 DOCS = Path(__file__).resolve().parents[1]
@@ -64,9 +65,9 @@ def build(folder, *, quick=False, labs=False, pyodide=None, say=print):
         source, made = Path(aside, "docs"), Path(aside, "site")
         shutil.copytree(DOCS, source, ignore=shutil.ignore_patterns("__pycache__"))
         clock = _Clock(say)
-        for generator in GENERATORS:
-            generator(source)
-            clock.say(f"pages by {generator.__module__.rpartition('.')[2]}")
+        if labs:
+            (source / IN_BROWSER).mkdir()  # pages of labs link to it
+        _write_pages(source, quick, clock)
         ran = _run_examples(source, quick)
         clock.say(f"{ran} examples")
         _sphinx(source, made)
@@ -74,7 +75,7 @@ def build(folder, *, quick=False, labs=False, pyodide=None, say=print):
             shutil.copytree(source / LIVE, made / LIVE)
         clock.say("Sphinx")
         if labs:
-            _embed_labs(made / "labs_in_browser", pyodide, say)
+            _embed_labs(made / IN_BROWSER, pyodide, say)
             clock.say("the labs in a browser")
         counted = check.look_through(made)
         static = made / "_static"
@@ -107,6 +108,16 @@ class _Clock:
 def _check_folder(folder):
     if folder.exists() and not (folder.is_dir() and ((folder / MARK).exists() or not any(folder.iterdir()))):
         raise BuildError(f"{folder} is there and is no site of an earlier build; name an empty or a new folder")
+
+
+def _write_pages(source, quick, clock):
+    """Have every generator write its pages."""
+    for generator in (*GENERATORS, *LONG):
+        try:
+            generator(source, **({"quick": quick} if generator in LONG else {}))
+        except ExampleError as problem:
+            raise BuildError(str(problem)) from problem
+        clock.say(f"pages by {generator.__module__.rpartition('.')[2]}")
 
 
 def _run_examples(source, quick):
