@@ -21,7 +21,7 @@ SCENES = Path("gallery", "scenes")
 FIRST = "wall"
 BOARDS = {"uno": "Arduino Uno", "pico": "Raspberry Pi Pico", "cortex-m4f": "Cortex-M4F at 168 MHz"}
 #: what is tried on a board where the library names nothing: the method that hl.compile chooses, then the cheapest
-TRIED = ({}, {"method": "semi_implicit_euler"})
+TRIED: tuple[dict[str, str], ...] = ({}, {"method": "semi_implicit_euler"})
 _CHANGE = re.compile(r"^\* `(\S+)`: ", re.MULTILINE)
 INDEX = """# Gallery
 

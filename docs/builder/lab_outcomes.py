@@ -46,7 +46,7 @@ def outcomes(sources):
     from IPython.utils.capture import capture_output
 
     shell = InteractiveShell.instance()
-    shell.display_formatter.active_types = [*KINDS]  # as a notebook, not as a terminal
+    shell.display_formatter.set_trait("active_types", [*KINDS])  # as a notebook, not as a terminal
     found = []
     try:
         with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), views() as opened:
