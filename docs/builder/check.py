@@ -72,8 +72,11 @@ class Html:
         return len(re.sub(r"<[^>]+>", " ", article[0]).split()) if article else 0
 
 
-def look_through(site):
-    """Return what the HTML and the style sheets in a folder hold, and what is wrong with them."""
+def look_through(site, asked=()):
+    """Return what the HTML and the style sheets in a folder hold, and what is wrong with them.
+
+    ``asked`` has the addresses that the site must have, as ``(file, anchor)``.
+    """
     site, counted = Path(site), Counted()
     files = {path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file()}
     pages = {
@@ -86,6 +89,9 @@ def look_through(site):
         counted.words += page.words
         counted.links += len(page.links)
         counted.wrong += [f"{name}: {why}" for why in dict.fromkeys(_wrong_in(name, page, pages, files))]
+    for name, anchor in sorted(asked):
+        if name not in pages or anchor not in pages[name].anchors:
+            counted.wrong.append(f"{name}#{anchor} is no address of this site")
     for name in sorted(files):
         if name.endswith(".css") and not name.startswith(OF_OTHERS):
             urls = [a or b for a, b in URL.findall((site / name).read_text("utf-8"))]

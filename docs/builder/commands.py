@@ -73,8 +73,9 @@ def _section(name, command):
 
 def _narrow(command):
     """The usage of a command in lines of at most 80 columns, whatever the terminal."""
-    command.formatter_class = lambda prog: argparse.HelpFormatter(prog, width=80)
-    return re.sub(r"\x1b\[[\d;]*m", "", command.format_usage())
+    made = argparse.HelpFormatter(command.prog, width=80)
+    made.add_usage(command.usage, command._actions, command._mutually_exclusive_groups)
+    return re.sub(r"\x1b\[[\d;]*m", "", made.format_help())
 
 
 def _sentence(text):

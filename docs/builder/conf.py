@@ -9,12 +9,15 @@ version = release = hapticlab.__version__
 
 extensions = [
     "myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "numpydoc", "sphinx_design", "sphinx_copybutton", "builder.hooks",
+    "builder.sphinx_names",
 ]  # fmt: skip
 source_suffix = {".md": "markdown"}
 root_doc = "index"
 # README lists the pages for readers of the repository; the builder and the pictures of pages are no pages
 exclude_patterns = ["README.md", "builder", "live", "build.py"]
 nitpicky = True
+smartquotes = False  # x'' is a second derivative
+python_maximum_signature_line_length = 88
 language = "en_GB"
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath", "amsmath"]

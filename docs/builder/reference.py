@@ -82,7 +82,7 @@ def namespace_page(namespace, names):
 
 def name_page(name, exists):
     """The page of one public name."""
-    parts = [f"# {name.typed}", "", BLOCK.format("\n".join(_described(name)))]
+    parts = [f"# {name.typed}", "", BLOCK.format(described(name))]
     if name.is_object and len(str(name.value)) > SHORT:
         parts += ["It prints as:", "", f"```text\n{name.value}\n```", ""]
     if used := [*_equations(name), *uses.links(uses.uses_of(name), name.document, exists)]:
@@ -90,15 +90,15 @@ def name_page(name, exists):
     return "\n".join(parts)
 
 
-def _described(name):
-    """Yield the lines of reStructuredText that describe a name."""
+def described(name):
+    """What describes a name to Sphinx, in reStructuredText."""
     if name.is_object:
-        yield from [f".. py:data:: {name.path}", f"   :type: {type(name.value).__name__}", ""]
-        yield from (f"   {line}" for line in name.doc.splitlines())
-        return
-    yield f".. auto{'class' if name.is_class else 'function'}:: {name.path}"
+        words = [f"   {line}" for line in name.doc.splitlines()]
+        return "\n".join([f".. py:data:: {name.path}", f"   :type: {type(name.value).__name__}", "", *words])
+    lines = [f".. auto{'class' if name.is_class else 'function'}:: {name.path}"]
     for short, member in name.members.items():
-        yield from ["", f"   .. auto{'property' if is_property(member) else 'method'}:: {name.path}.{short}"]
+        lines += ["", f"   .. auto{'property' if is_property(member) else 'method'}:: {name.path}.{short}"]
+    return "\n".join(lines)
 
 
 def _equations(name):

@@ -4,17 +4,18 @@ import inspect
 import json
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 from .public_names import NAMESPACES, module_of, names_of, own_names
 
 ROOT = Path(__file__).parents[2]
 _DOTTED = re.compile(r"\bhl\.(\w+)(?:\.(\w+))?")
-_IMPORTED = re.compile(r"^ *from (hapticlab[\w.]*) import \(?([\w\s,]+)", re.M)
+_IMPORTED = re.compile(r"^ *from (hapticlab[\w.]*) import (\([^)]*\)|.*)", re.M)
 #: in a text, or in the name of a test
 EQUATION = re.compile(r"\(23\.(\d+)\)|(?<!fig)_23_(\d+)")
 FIGURE = re.compile(r"Fig(?:s?\.|ure) 23\.(\d+)|fig_23_(\d+)")
+KINDS = ("names", "labs", "pages", "papers", "tests", "code")
 #: folders of docs/ whose pages are looked through
 FOLDERS = ("tutorial", "how_to", "explanation", "teaching", "paddle", "extending", "project")
 
@@ -28,30 +29,25 @@ class Text:
     title: str
     text: str
 
-    @property
+    @cached_property
     def names(self):
         """The public names that it uses, as ``(namespace, short)``, and what it imports, as ``(module, name)``."""
-        return _names(self.text)
+        found = {(first, second) if first in NAMESPACES else ("hl", first) for first, second in _DOTTED.findall(self.text)}
+        return found | {
+            (module.replace("hapticlab", "hl") if module.count(".") == 0 else module, one)
+            for module, names in _IMPORTED.findall(self.text)
+            for one in re.findall(r"\w+", names)
+        }
 
-    @property
+    @cached_property
     def equations(self):
         """The numbers of the chapter's equations that it names."""
         return {int(one or other) for one, other in EQUATION.findall(self.text)}
 
-    @property
+    @cached_property
     def figures(self):
         """The numbers of the chapter's figures that it names."""
         return {int(one or other) for one, other in FIGURE.findall(self.text)}
-
-
-@cache
-def _names(text):
-    found = {(first, second) if first in NAMESPACES else ("hl", first) for first, second in _DOTTED.findall(text)}
-    return found | {
-        (module.replace("hapticlab", "hl") if module.count(".") == 0 else module, one)
-        for module, names in _IMPORTED.findall(text)
-        for one in re.findall(r"\w+", names)
-    }
 
 
 @cache
@@ -96,9 +92,11 @@ def citing_texts():
 
 
 def uses_of(name):
-    """The texts that use a public name under any of its paths, by kind."""
+    """The texts that use a public name under any of its paths, by kind; first the tests of its own module."""
     spelt = _spellings(name)
-    return by_kind(text for text in texts() if text.names & spelt)
+    own = f"test_{getattr(name.value, '__module__', '').rpartition('.')[2]}"
+    found = [text for text in texts() if text.names & spelt]
+    return by_kind(sorted(found, key=lambda text: text.title.rpartition("/")[2].removesuffix(".py") != own))
 
 
 def _spellings(name):
@@ -118,10 +116,11 @@ def citing(number, kind):
 
 
 def by_kind(found):
-    kinds = {}
+    """Texts by their kind, in the order of KINDS."""
+    kinds = {kind: [] for kind in KINDS}
     for text in found:
-        kinds.setdefault(text.kind, []).append(text)
-    return kinds
+        kinds[text.kind].append(text)
+    return {kind: some for kind, some in kinds.items() if some}
 
 
 def links(found, there, exists=lambda address: True, most=12):

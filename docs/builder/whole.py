@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from . import check, outcomes
+from . import anchors, check, outcomes
 from .examples import ExampleError
 from .frames import LIVE
-from .generators import GENERATORS, LONG
+from .generators import GENERATORS, INDEXES, LONG
 from .lab_pages import IN_BROWSER
 from .licences import without_a_part
 
@@ -77,7 +77,7 @@ def build(folder, *, quick=False, labs=False, pyodide=None, say=print):
         if labs:
             _embed_labs(made / IN_BROWSER, pyodide, say)
             clock.say("the labs in a browser")
-        counted = check.look_through(made)
+        counted = check.look_through(made, anchors.expected())
         static = made / "_static"
         shipped = [path.relative_to(static).as_posix() for path in static.rglob("*") if path.is_file()]
         wrong = counted.wrong + [f"_static/{name} has no licence in licences.py" for name in without_a_part(shipped)]
@@ -112,7 +112,7 @@ def _check_folder(folder):
 
 def _write_pages(source, quick, clock):
     """Have every generator write its pages."""
-    for generator in (*GENERATORS, *LONG):
+    for generator in (*GENERATORS, *LONG, *INDEXES):
         try:
             generator(source, **({"quick": quick} if generator in LONG else {}))
         except ExampleError as problem:

@@ -54,9 +54,9 @@ def compile(
     Parameters
     ----------
     scene : Scene
-    method : {"euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3",
-    "rk4", \
-"nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", ...}, optional
+    method : str or Method, optional
+        "euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3", "rk4",
+        "nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", or "exact+" and another.
         By default the one that the scene needs: "taylor" where a contact or a friction must be located inside the step
         (touch, impact, sticking), else "rk4". The program's notes say which was chosen, and why. ``hl.methods.table()``
         lists the explicit methods with order, cost and stable range; ``hl.methods.order_of`` gives the order of the

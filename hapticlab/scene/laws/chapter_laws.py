@@ -35,14 +35,14 @@ def wall(
 ) -> Scene:
     """Virtual wall: a spring K that pushes back beyond x_o, with a virtual damper B in parallel.
 
-    ======================  =======  ====================================================
-    law                     Eq.      spring force, with p = x - x_o
-    ======================  =======  ====================================================
-    ``zoh``                 (23.1)   k p(n)
-    ``half_sample``         (23.3)   k (p(n) + T/2 v(n))
-    ``backward_difference`` (23.5)   k (1.5 p(n) - 0.5 p(n-1))
-    ``ellis``               (23.7)   k (2 p(n) - 1.5 p(n-1) + 0.5 p(n-2))
-    ======================  =======  ====================================================
+    =======================  =======  ====================================================
+    law                      Eq.      spring force, with p = x - x_o
+    =======================  =======  ====================================================
+    ``zoh``                  (23.1)   k p(n)
+    ``half_sample``          (23.3)   k (p(n) + T/2 v(n))
+    ``backward_difference``  (23.5)   k (1.5 p(n) - 0.5 p(n-1))
+    ``ellis``                (23.7)   k (2 p(n) - 1.5 p(n-1) + 0.5 p(n-2))
+    =======================  =======  ====================================================
 
     v(n) is the paddle's velocity, which is exact only in a simulated paddle without an encoder. With an encoder, or on a
     board, v(n) is estimated from positions, and ``half_sample`` is ``backward_difference`` unless ``velocity`` names
