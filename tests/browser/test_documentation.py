@@ -1,0 +1,93 @@
+"""The site of the documentation in Chromium: nothing is loaded from elsewhere, pages fit a phone, and what axe-core finds.
+
+The small form of the site; `.ci/full docs` builds the whole one, and opens more pages of it. DOCUMENTATION in the environment is
+the folder of a site that is built already; PICTURES is a folder for pictures of the pages.
+"""
+
+import os
+from functools import partial
+from pathlib import Path
+
+import pytest
+from axe import findings
+from builder.whole import build
+from sites import Quiet, serving, visited
+
+pytestmark = pytest.mark.wide
+
+#: a page of each kind; of kinds that the small form lacks, the site that `.ci/full` builds has one
+PAGES = ("index", "how_to/live", "how_to/scenes", "papers/abbott_okamura_2005", "paddle/owners_guide", "project/licences")
+OF_THE_WHOLE = ("reference/design/coupler", "reference/commands", "reference/chapter", "reference/glossary", "gallery/index")
+#: for how long MathJax may set a page [ms]
+TYPESET = 20_000
+WIDTHS = {"wide": 1280, "narrow": 390}
+
+
+@pytest.fixture(scope="module")
+def site(complete, tmp_path_factory):
+    """The address of the site."""
+    folder = os.environ.get("DOCUMENTATION")
+    if not folder:
+        folder = tmp_path_factory.mktemp("documentation") / "site"
+        build(folder, quick=True, say=lambda words: None)
+    with serving(partial(Quiet, directory=folder)) as server:
+        yield f"http://127.0.0.1:{server.server_port}", Path(folder)
+
+
+def looked_at(browser, site, name, *, width, scheme):
+    """Open a page as a new visitor and return how far it is wider than the window, and what axe-core finds."""
+    address, _ = site
+    with visited(browser, width=WIDTHS[width], color_scheme=scheme) as page:
+        failed = []
+        page.on("response", lambda response: failed.append(response.url) if response.status >= 400 else None)
+        page.on("pageerror", lambda error: failed.append(str(error)))
+        page.goto(f"{address}/{name}.html")
+        page.wait_for_function("window.MathJax?.startup?.promise?.then(() => true) ?? true", timeout=TYPESET)
+        assert page.evaluate("document.documentElement.dataset.theme") == scheme
+        if pictures := os.environ.get("PICTURES"):
+            page.screenshot(path=Path(pictures, f"{name.replace('/', '-')}-{width}-{scheme}.png"))
+        beyond = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        assert failed == []
+        return beyond, findings(page)
+
+
+@pytest.mark.parametrize("width, scheme", [("wide", "dark"), ("narrow", "light")])
+def test_pages_fit_are_usable_and_load_nothing_from_elsewhere(browser, site, width, scheme):
+    names = [*PAGES, *(name for name in OF_THE_WHOLE if (site[1] / f"{name}.html").is_file())]
+    looked = {name: looked_at(browser, site, name, width=width, scheme=scheme) for name in names}
+    assert looked == {name: (0, []) for name in names}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width, scheme", [("wide", "light"), ("narrow", "dark")])
+def test_the_other_scheme_too(browser, site, width, scheme):
+    test_pages_fit_are_usable_and_load_nothing_from_elsewhere(browser, site, width, scheme)
+
+
+def test_search_finds_a_page_and_a_wrong_address_leads_back(browser, site):
+    with visited(browser) as page:
+        page.goto(f"{site[0]}/search.html?q=chatter")
+        page.wait_for_selector("#search-results li a")
+        page.goto(f"{site[0]}/404.html")
+        page.fill("input", "passivity")
+        page.click("button")
+        page.wait_for_selector("#search-results li a")
+
+
+def test_a_live_view_of_a_page_moves(browser, site):
+    with visited(browser) as page:
+        page.goto(f"{site[0]}/how_to/live.html")
+        frame = page.locator("iframe").first
+        frame.scroll_into_view_if_needed()
+        canvas = frame.content_frame.locator("canvas").first
+        canvas.wait_for()
+        shot = canvas.screenshot()
+        box = canvas.bounding_box()
+        page.mouse.move(box["x"] + box["width"] / 3, box["y"] + box["height"] / 2)
+        page.mouse.down()
+        page.mouse.move(box["x"] + box["width"] * 2 / 3, box["y"] + box["height"] / 2, steps=8)
+        page.wait_for_function(
+            "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
+        )
+        assert canvas.screenshot() != shot
+        page.mouse.up()

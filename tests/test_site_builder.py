@@ -1,0 +1,121 @@
+"""The builder of the site: examples with their outcomes, and what it finds wrong in HTML. tests/browser/test_documentation.py
+builds a site and opens it."""
+
+import re
+
+import pytest
+from builder import check, examples, from_the_root, licences, outcomes, whole
+from builder.command import main
+
+PAGE = """# A page
+
+```python
+import hapticlab as hl
+
+paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("pinch", push=2.0))
+log = paddle.run(hl.wall()(k=500, x_o=0.01), duration=0.1)
+print(len(log), "samples")
+```
+
+```text
+99 samples
+```
+
+![The handle sinks in](old.png)
+
+```python
+hl.show(hl.plot(log, "x"), alt="Position of the handle")
+view = hl.live(paddle, hl.wall()(k=300, x_o=0.01))
+```
+
+After.
+"""
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory):
+    """The page after it ran, and the folder with what it shows."""
+    source = tmp_path_factory.mktemp("docs")
+    (source / "how_to").mkdir()
+    (source / "how_to" / "page.md").write_text(PAGE)
+    assert outcomes.write(source, "how_to/page.md") == 2
+    return (source / "how_to" / "page.md").read_text(), source
+
+
+def test_what_an_example_prints_takes_the_place_of_what_the_page_says(shown):
+    text, _ = shown
+    assert "99 samples" not in text
+    assert (
+        text.index('print(len(log), "samples")') < text.index(":class: printed\n\n100 samples\n```") < text.index("![The handle")
+    )
+
+
+def test_a_figure_and_a_view_stand_below_their_example(shown):
+    text, source = shown
+    (file, alt) = re.search(r"\{image\} /(\S+)\n:alt: (.+)", text).groups()
+    assert alt == "Position of the handle" and "<svg" in (source / file).read_text()
+    (address,) = re.findall(r'<iframe src="\.\./(live/\S+\.html)"', text)
+    assert 'id="hl-data"' in (source / address).read_text("utf-8")
+    assert text.rstrip().endswith("After.")
+
+
+def test_a_picture_gives_way_to_the_figure_that_the_example_draws():
+    code = 'import hapticlab as hl\nfigure = hl.plot({"a": ([0, 1], [0, 1])}, xlabel="a", ylabel="b")'
+    text = f"```python\n{code}\n```\n\n![Words](old.png)\n"
+    ran = examples.run(text, "page.md")
+    assert outcomes.PICTURE.match(text, ran.examples[0].end)["alt"] == "Words" and len(ran.examples[0].figures) == 1
+
+
+@pytest.mark.parametrize(
+    "code, line, words",
+    [("a = 1\na.b", 4, "no attribute 'b'"), ("def f(:", 3, "SyntaxError"), ("import warnings\nwarnings.warn('old')", 4, "old")],
+)
+def test_an_example_that_fails_is_named_with_its_line(code, line, words):
+    with pytest.raises(examples.ExampleError, match=rf"(?s)page.md, line {line}: .*{words}"):
+        examples.run(f"# Page\n```python\n{code}\n```\n", "page.md")
+
+
+NOT_HERE = "loads //example.org/b.png, which is elsewhere"
+GOOD = '<html><body><h1 id="top">A</h1><a href="b/two.html#deep">two</a> <a href="https://example.org">out</a></body></html>'
+
+
+@pytest.mark.parametrize(
+    "body, wrong",
+    [
+        ('<a href="../one.html#top">one</a> <a href="">here</a>', []),
+        ('<a href="gone.html">', ["links gone.html, which is not there"]),
+        ('<a href="../one.html#gone">', ["links ../one.html#gone, which has no such anchor"]),
+        ('<script src="https://cdn.example.org/a.js"></script>', ["loads https://cdn.example.org/a.js, which is elsewhere"]),
+        ('<link rel="stylesheet" href="//example.org/a.css">', ["loads //example.org/a.css, which is elsewhere"]),
+        ('<img srcset="a.png 1x">', ["loads a.png, which is not there"]),
+        ('<img srcset="one.html 1x, //example.org/b.png 2x">', ["loads one.html, which is not there", NOT_HERE]),
+        ("<script>const a = '<img src=\"https://example.org\">'</script>", []),
+        ('<a href="javascript:run()">', ["links javascript:run(), which is no address of the web"]),
+    ],
+)  # fmt: skip
+def test_what_leads_nowhere_and_what_comes_from_elsewhere_is_found(tmp_path, body, wrong):
+    (tmp_path / "b").mkdir()
+    (tmp_path / "one.html").write_text(GOOD)
+    (tmp_path / "b" / "two.html").write_text(f'<article id="deep">two words {body}</article>')
+    found = check.look_through(tmp_path)
+    assert found.wrong == [f"b/two.html: {why}" for why in wrong]
+    assert found.pages == 2
+
+
+def test_a_style_sheet_may_load_nothing_from_elsewhere(tmp_path):
+    (tmp_path / "a.css").write_text('@import "b.css"; a { background: url(https://example.org/a.woff2) }')
+    assert check.look_through(tmp_path).wrong == ["a.css loads https://example.org/a.woff2, which is elsewhere"]
+
+
+def test_a_folder_with_anything_else_is_kept(tmp_path, capsys):
+    (tmp_path / "mine.txt").write_text("mine")
+    assert main([str(tmp_path)]) == 1
+    assert "no site of an earlier build" in capsys.readouterr().out and (tmp_path / "mine.txt").exists()
+
+
+def test_every_part_has_a_licence_text():
+    assert [part.name for part in licences.PARTS if len(part.text) < 900] == []
+
+
+def test_pages_beyond_docs_are_in_the_site():
+    assert [file for file in from_the_root.PAGES if not (whole.DOCS.parent / file).is_file()] == []
