@@ -45,6 +45,7 @@ html_theme_options = {
     "logo": {"text": "hapticlab"},
     "header_links_before_dropdown": 9,
     "navigation_with_keys": False,
+    "collapse_navigation": True,  # of other sections the side bar shows nothing, which halves the pages
     "show_toc_level": 2,
     "footer_start": ["copyright"],
     "footer_end": ["licences"],
