@@ -66,6 +66,15 @@ def test_the_changelog_has_the_form_of_keep_a_changelog():
         assert kinds == order, section.partition("\n")[0]  # each once, and nothing else
 
 
+def test_the_wheel_has_the_licences_of_what_is_compiled_into_it():
+    assert PROJECT["license-files"] == ["LICENSE", "firmware/prebuilt/LICENCES.txt"]
+    text = (ROOT / "firmware/prebuilt/LICENCES.txt").read_text("utf-8")
+    assert "\navr-libc\n" in text and "\nMinGW-w64 runtime\n" in text
+    assert len(re.findall(r"Redistributions in binary form must reproduce the", text)) == 2  # the duty of each
+    compiled = {path.name for path in (ROOT / "firmware/prebuilt").iterdir()} - {"LICENCES.txt"}
+    assert [name for name in compiled if name not in text] == []  # each image is spoken of
+
+
 # ------------------------------------------------------------------------------------------------ container
 
 
