@@ -58,8 +58,8 @@ def running_ahead(results):
             for value, what, note in sorted(peers) if ours else ():
                 if value < ours[0]:
                     more, best = f" ({note})" if note else "", ours[1].rpartition(": ")[2].removeprefix(f"{OURS}, ")
-                    needed = "memory" if unit == "MB" else "time"
-                    yield f"{title.partition(';')[0]}: {what}{more} needs {value / ours[0]:.2g} of hapticlab's {needed} ({best})"
+                    needed, of = "memory" if unit == "MB" else "time", f" ({best})" if best != OURS else ""
+                    yield f"{title.partition(';')[0]}: {what}{more} needs {value / ours[0]:.2g} of hapticlab's {needed}{of}"
 
 
 def running_tables(results, printed):
