@@ -141,7 +141,7 @@ def test_every_page_of_benchmarks_says_first_where_a_peer_is_ahead_then_machine_
         assert rows["processor"] and rows["cores"].isdecimal() and rows["load, before and after"]
         datetime.date.fromisoformat(rows["date"])
         assert rows["command"].startswith(f"`python tests/benchmarks/{page.script}") and "hapticlab" in rows["packages"]
-        assert f"({name}.md)" in (report.DOCS / "index.md").read_text("utf-8")
+        assert f"(benchmarks/{name}.md)" in (ROOT / "docs/README.md").read_text("utf-8")
 
 
 def row(what, value, unit="s"):
