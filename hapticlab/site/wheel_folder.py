@@ -7,7 +7,7 @@ pip downloads.
 from __future__ import annotations
 
 import hashlib
-import importlib.util
+import importlib.metadata
 import os
 import re
 import shutil
@@ -153,8 +153,11 @@ def collect_wheels(
 
 def _tools():
     """Return uv's program; pip is there too."""
-    if importlib.util.find_spec("pip") is None:
-        raise EngineMissingError(f"{sys.executable} has no pip, which downloads wheels; do: {sys.executable} -m ensurepip")
+    try:
+        importlib.metadata.version("pip")  # looking for the module itself, setuptools may warn of distutils
+    except importlib.metadata.PackageNotFoundError:
+        cure = f"do: {sys.executable} -m ensurepip"
+        raise EngineMissingError(f"{sys.executable} has no pip, which downloads wheels; {cure}") from None
     if uv := shutil.which("uv", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])):
         return uv
     raise EngineMissingError('uv, which finds the wheels of other systems, is not installed; do: pip install "hapticlab[wheels]"')

@@ -40,7 +40,7 @@ def blocks(page=PAGE):
 
 def files(page=PAGE):
     """Return the files of the page, path to content."""
-    return dict(re.findall(r"`(/[^`\s]*)`[^`]*?:?\n[^`]*?\n?```(?:python|sh)\n(?!# as)(.*?)^```", page, re.M | re.S))
+    return dict(re.findall(r"`(/[^`\s]*)`[^`]*?:?\n[^`]*?\n?```(?:py|sh)\n(?!# as)(.*?)^```", page, re.M | re.S))
 
 
 def private_machine(scratch):

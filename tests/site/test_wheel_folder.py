@@ -79,6 +79,10 @@ def test_what_has_no_wheel_is_named_and_another_call_replaces_only_what_it_wrote
         collect_wheels(tmp_path / "none", systems=["macos"], wheel=index, say=lambda step: None)
 
 
+def without_pip(name):
+    raise wheel_folder.importlib.metadata.PackageNotFoundError(name)
+
+
 def test_what_is_missing_to_begin_with_is_told(index, tmp_path, monkeypatch):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").touch()
@@ -89,7 +93,7 @@ def test_what_is_missing_to_begin_with_is_told(index, tmp_path, monkeypatch):
     monkeypatch.setattr(wheel_folder.shutil, "which", lambda *_, **__: None)
     with pytest.raises(EngineMissingError, match=r'pip install "hapticlab\[wheels\]"'):
         collect_wheels(tmp_path / "room", wheel=index)
-    monkeypatch.setattr(wheel_folder.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(wheel_folder.importlib.metadata, "version", without_pip)
     with pytest.raises(EngineMissingError, match="has no pip.*ensurepip"):
         collect_wheels(tmp_path / "room", wheel=index)
 
