@@ -54,7 +54,7 @@ def test_a_figure_and_a_view_stand_below_their_example(shown):
     text, source = shown
     (file, alt) = re.search(r"\{image\} /(\S+)\n:alt: (.+)", text).groups()
     assert alt == "Position of the handle" and "<svg" in (source / file).read_text()
-    (address,) = re.findall(r'<iframe src="\.\./(live/\S+\.html)"', text)
+    (address,) = re.findall(r'<iframe [^>]*src="\.\./(live/\S+\.html)"', text)
     assert 'id="hl-data"' in (source / address).read_text("utf-8")
     assert text.rstrip().endswith("After.")
 

@@ -1,7 +1,7 @@
 """The site of the documentation in Chromium: nothing is loaded from elsewhere, pages fit a phone, and what axe-core finds.
 
 The small form of the site; `.ci/full docs` builds the whole one, and opens more pages of it. DOCUMENTATION in the environment is
-the folder of a site that is built already; PICTURES is a folder for pictures of the pages.
+the folder of a site that is built already. Site and pictures of pages stay in the folder that HAPTICLAB_ARTIFACTS names.
 """
 
 import os
@@ -18,6 +18,7 @@ pytestmark = pytest.mark.wide
 #: a page of each kind; of kinds that the small form lacks, the site that `.ci/full` builds has one
 PAGES = ("index", "how_to/live", "how_to/scenes", "papers/abbott_okamura_2005", "paddle/owners_guide", "project/licences")
 OF_THE_WHOLE = ("reference/design/coupler", "reference/commands", "reference/chapter", "reference/glossary", "gallery/index")
+ARTIFACTS = Path(os.environ["HAPTICLAB_ARTIFACTS"]) if "HAPTICLAB_ARTIFACTS" in os.environ else None
 #: for how long MathJax may set a page [ms]
 TYPESET = 20_000
 WIDTHS = {"wide": 1280, "narrow": 390}
@@ -28,7 +29,7 @@ def site(complete, tmp_path_factory):
     """The address of the site."""
     folder = os.environ.get("DOCUMENTATION")
     if not folder:
-        folder = tmp_path_factory.mktemp("documentation") / "site"
+        folder = (ARTIFACTS or tmp_path_factory.mktemp("documentation")) / "small_documentation"
         build(folder, quick=True, say=lambda words: None)
     with serving(partial(Quiet, directory=folder)) as server:
         yield f"http://127.0.0.1:{server.server_port}", Path(folder)
@@ -44,8 +45,8 @@ def looked_at(browser, site, name, *, width, scheme):
         page.goto(f"{address}/{name}.html")
         page.wait_for_function("window.MathJax?.startup?.promise?.then(() => true) ?? true", timeout=TYPESET)
         assert page.evaluate("document.documentElement.dataset.theme") == scheme
-        if pictures := os.environ.get("PICTURES"):
-            page.screenshot(path=Path(pictures, f"{name.replace('/', '-')}-{width}-{scheme}.png"))
+        if ARTIFACTS:
+            page.screenshot(path=ARTIFACTS / f"documentation-{name.replace('/', '-')}-{width}-{scheme}.png")
         beyond = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert failed == []
         return beyond, findings(page)
