@@ -138,19 +138,21 @@ def run(source):
 
 def page(source, scene, live):
     """Return the Markdown of a scene's page; ``live`` is the HTML of its frame."""
-    docname = f"../live/{source.name}.html"
-    changes = [
-        f'* <a href="{docname}#{address}" target="{source.name}">{address.replace(";", "; ")}</a>: {w}'
-        for address, w in source.changes.items()
-    ]
+    address = f"../live/{source.name}.html"
+    changes = [f"* {_link(f'{address}#{values}', values, source.name)}: {words}" for values, words in source.changes.items()]
     units = {name: "" if one.unit == "1" else f" {one.unit}" for name, one in scene.parameters.items()}
-    values = [f"`{name}` = {value:g}{units[name]}" for name, value in scene.values.items()]
+    values = [f"`{name} = {value:g}{units[name]}`" for name, value in scene.values.items()]
     return PAGE.format(
         title=source.title, words=source.words, frame=live, changes="\n".join(["", *changes]),
         equations=scene._repr_latex_().strip("$").removeprefix("\\displaystyle "),
         values=f"Here {', '.join(values)}." if values else "", code=code(source, scene), teaches=teaches(source),
         costs=costs(source, scene), labs=labs(source),
     )  # fmt: skip
+
+
+def _link(address, words, frame_name):
+    """A link that gives values to the frame on this page."""
+    return f'<a href="{address}" target="{frame_name}">{words.replace(";", "; ").replace("*", "&#42;")}</a>'
 
 
 def code(source, scene):

@@ -56,7 +56,7 @@ def page(name, cells, outcomes, frames, browser="Run"):
     for cell in cells[1:]:
         source = "".join(cell["source"]).strip()
         if cell["cell_type"] == "markdown":
-            parts.append(source)
+            parts.append(source.replace("```python\n", "```py\n"))  # an example for readers, which needs an answer to run
         elif source:
             parts += [f"```py\n{source}\n```", *_shown(outcomes.get(cell["id"]), "hl.check(" in source, frames)]
     return "\n\n".join(parts) + "\n"
