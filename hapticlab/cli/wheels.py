@@ -1,6 +1,7 @@
 """What the command line says of the wheels for a lab room: its steps, its size, what a system lacks, and how to install them."""
 
-from ..site.wheel_folder import README, collect_wheels
+from ..site.room_readme import README
+from ..site.wheel_folder import collect_wheels
 
 
 def wheels(parser, options):

@@ -6,7 +6,6 @@ pip downloads.
 
 from __future__ import annotations
 
-import hashlib
 import importlib.metadata
 import os
 import re
@@ -20,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import CourseError, EngineMissingError
+from .room_readme import DIGESTS, README, describe
 from .wheels import wheel_for
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from ..base.annotations import File
 
-README, DIGESTS = "README.txt", "SHA256SUMS"
 HERE = f"{sys.version_info.major}.{sys.version_info.minor}"
 #: names of `hapticlab wheels --for`, beside those of single targets
 SYSTEMS = {"windows": "windows-x86_64", "macos": "macos-aarch64", "linux": "linux-x86_64"}
@@ -42,30 +41,6 @@ PLATFORMS = {
     "macos-x86_64": ("x86_64-apple-darwin", ("macosx_13_0_x86_64",)),
     "macos-aarch64": ("aarch64-apple-darwin", ("macosx_13_0_arm64",)),
 }  # fmt: skip
-INSTALL = """hapticlab for a room without a network
-
-Open a terminal in this folder, and paste the line of your system. It needs no network and no compiler. It makes a
-virtual environment `hapticlab` in your own folder, and installs hapticlab there.
-
-{lines}
-For: {targets}. Linux needs glibc 2.28 or newer, and macOS 13 or newer.
-{missing}
-Digests are in {digests}; on Linux, `sha256sum -c {digests}` compares them.
-
-{files}
-"""
-POWERSHELL = """Windows (PowerShell):
-  py -{python} -m venv $HOME\\hapticlab; & $HOME\\hapticlab\\Scripts\\pip install --no-index --find-links . "{what}"
-then
-  & $HOME\\hapticlab\\Scripts\\hapticlab {command}
-"""
-SHELL = """{system}:
-  python{python} -m venv ~/hapticlab && ~/hapticlab/bin/pip install --no-index --find-links . "{what}"
-then
-  ~/hapticlab/bin/hapticlab {command}
-"""
-#: beginning of a target -> how it installs, and what it is called
-LINES = {"windows": (POWERSHELL, "Windows"), "macos": (SHELL, "macOS"), "linux": (SHELL, "Linux")}
 
 
 @dataclass(frozen=True)
@@ -145,7 +120,7 @@ def collect_wheels(
         files = {path.name: path.stat().st_size for path in sorted(Path(aside).glob("*.whl"))}
         for name in before - set(files):
             (folder / name).unlink(missing_ok=True)
-        _describe(Path(aside), files, what, served, pythons, missing)
+        describe(Path(aside), files, what, served, missing)
         for path in Path(aside).iterdir():
             os.replace(path, folder / path.name)
     return WheelFolder(folder, files, tuple(missing))
@@ -220,21 +195,3 @@ def _download(chosen, target, python, folder):
             f"pip could not download the wheels of {target}, Python {python}; check the network and do the same command again. "
             f"pip said:\n{done.stderr.strip()}"
         )
-
-
-def _describe(folder, files, what, served, pythons, missing):
-    """Write what a person reads in the folder, and the digests."""
-    command = "labs" if "notebook" in what else "demo"
-    lines = [
-        text.format(system=system, python=pythons[-1], what=what, command=command)
-        for beginning, (text, system) in LINES.items()
-        if any(target.startswith(beginning) for target in served)
-    ]
-    sizes = [f"{size / 1e6:8.2f} MB  {name}\n" for name, size in files.items()]
-    text = INSTALL.format(
-        lines="\n".join(lines), targets="; ".join(served), missing="".join(f"Missing: {line}\n" for line in missing),
-        digests=DIGESTS, files="".join([*sizes, f"{sum(files.values()) / 1e6:8.2f} MB  all {len(files)} wheels"]),
-    )  # fmt: skip
-    (folder / README).write_text(text, "utf-8")
-    digests = [f"{hashlib.sha256((folder / name).read_bytes()).hexdigest()}  {name}\n" for name in files]
-    (folder / DIGESTS).write_text("".join(digests), "utf-8", newline="\n")
