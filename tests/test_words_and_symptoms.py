@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import sympy as sp
-from builder import glossary, glossary_pictures, sample_picture
+from builder import cross_links, glossary_pictures, sample_picture
 from builder.examples import run
 
 from hapticlab import n, x
@@ -76,11 +76,14 @@ def test_a_picture_is_drawn_and_is_the_same_each_time(name):
 
 
 def test_names_labs_and_equations_become_links_where_their_pages_are():
-    text = "See `hl.wall`, Eq. (23.1), lab 02, lab 77."
-    assert glossary.linked(text, labs={}, names=False, chapter=False) == text
-    linked = glossary.linked(text, labs={"02": "02_virtual_wall"}, names=True, chapter=True)
+    text = "See `hl.wall`, Eq. (23.1), Fig. 23.4, lab 02, lab 77."
+    assert cross_links.linked(text, "how_to/a.md", names=set(), labs={}, targets=set()) == text
+    given = {"names": {"hl.wall"}, "labs": {"02": "labs/02_virtual_wall.md"}, "targets": {"eq-23-1", "fig-23-4"}}
+    linked = cross_links.linked(text, "how_to/a.md", **given)
     assert "{py:obj}`hl.wall <hapticlab.wall>`" in linked and "[lab 02](../labs/02_virtual_wall.md), lab 77." in linked
-    assert "[Eq. (23.1)](chapter.md#eq-23-1)" in linked
+    assert "[Eq. (23.1)](../reference/chapter.md#eq-23-1), [Fig. 23.4](../reference/chapter.md#fig-23-4)" in linked
+    kept = "# `hl.wall`\n[the wall `hl.wall`, lab 02](x.md) `lab 02`\n```python\n# lab 02\n```\n[of two\nlines, lab 02](y.md)"
+    assert cross_links.linked(kept, "how_to/a.md", **given) == kept
 
 
 def test_the_drawing_of_a_sample_is_what_its_code_draws():

@@ -1,6 +1,19 @@
 """What writes pages: each function gets the folder of the copied sources and writes Markdown, or HTML for ``live/``, into it."""
 
-from . import chapter, commands, doctor, from_the_root, gallery, glossary, lab_pages, licences, papers, reference, sections
+from . import (
+    chapter,
+    commands,
+    cross_links,
+    doctor,
+    from_the_root,
+    gallery,
+    glossary,
+    lab_pages,
+    licences,
+    papers,
+    reference,
+    sections,
+)
 
 #: called in this order, before the examples run; a later one may read what an earlier one wrote
 GENERATORS = (
@@ -17,5 +30,6 @@ INDEXES = (
     papers.write,
     reference.write,
     glossary.write,
+    cross_links.write,
     sections.write,
 )
