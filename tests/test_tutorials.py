@@ -72,7 +72,7 @@ def words_of(text):
 @pytest.mark.wide
 def test_the_examples_of_the_first_wall_run():
     page = run(FIRST_WALL, "docs/tutorial/first_wall.md")
-    assert "the wall gives 0.60 N at x = 7.00 mm" in page.printed  # 300 (x - 5e-3) = 2 - 200 x
+    assert "the wall gives 0.60 N at 7.00 mm" in page.printed  # 300 (x - 5e-3) = 2 - 200 x
     assert "4000 N/m: the handle oscillates by 0.9" in page.printed
     assert "the mass rests at 0.857 of x; K/(K + k) = 0.857" in page.printed
     assert "k_3*x(n)**2 is in N/m but k_1*x(n) is in N" in page.printed
@@ -83,9 +83,9 @@ def test_the_examples_of_the_first_wall_run():
 def test_the_first_four_lines_and_the_first_wall_on_a_simulated_board_run():
     (four,) = (text for _, language, text in blocks(FIRST_WALL) if language == "python" and "hl.__version__" in text)
     assert len(four.splitlines()) == 4
-    assert "0.60 N at x = 7.00 mm" in run(f"```python\n{four}```\n", "four lines").printed
+    assert "0.60 N at 7.00 mm" in run(f"```python\n{four}```\n", "four lines").printed
     printed = run(PADDLE, "docs/tutorial/paddle_on_the_desk.md").printed
-    assert "0.43 N at x = 7.86 mm; fault: None" in printed  # 150 (x - 5e-3) = 2 - 200 x
+    assert "0.43 N at 7.86 mm; fault: None" in printed  # 150 (x - 5e-3) = 2 - 200 x
 
 
 def test_every_command_is_understood():
