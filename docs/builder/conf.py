@@ -1,6 +1,7 @@
 """Sphinx's settings; ``whole.py`` hands the folder of sources over."""
 
 import hapticlab
+from builder.public_names import classes
 
 project = "hapticlab"
 author = "the hapticlab developers"
@@ -24,6 +25,8 @@ myst_enable_extensions = ["colon_fence", "deflist", "dollarmath", "amsmath"]
 myst_heading_anchors = 4  # a link names a heading as GitHub does
 myst_dmath_double_inline = True
 autosummary_generate = False  # the reference writes its pages itself
+numpydoc_xref_param_type, numpydoc_xref_ignore = True, "all"  # only these become links
+numpydoc_xref_aliases = classes()
 numpydoc_show_class_members = False  # the reference says which members a class has
 mathjax_path = "tex-svg.js"  # copied from the wheel sphinx-mathjax-offline, with its glyphs inside
 mathjax3_config = {"options": {"enableMenu": False}}  # the menu would load its parts from an address that the site lacks

@@ -110,3 +110,10 @@ def callables(name):
     for short, member in name.members.items():
         if not is_property(member):
             yield f"{name.path}.{short}", _plain(member)
+
+
+def classes():
+    """Name of a public class, as docstrings say it of an argument, and its path; names of two are left out."""
+    found = [(name.short, name.path) for name in own_names() if name.is_class and name.short[0].isupper()]
+    once = {short for short, _ in found if [one for one, _ in found].count(short) == 1}
+    return {short: path for short, path in found if short in once}

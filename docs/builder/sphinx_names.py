@@ -13,10 +13,16 @@ from .public_names import own_names
 
 def setup(app):
     """Sphinx calls this; it is named in the ``extensions`` of conf.py."""
+    app.connect("config-inited", link_own_classes_alone, priority=900)  # after numpydoc's own
     app.connect("doctree-read", set_anchors)
     app.connect("doctree-read", name_neighbours)
     app.connect("missing-reference", resolve)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def link_own_classes_alone(_app, config):
+    """Take from numpydoc the links of types that lead to the documents of Python, which are elsewhere."""
+    config.numpydoc_xref_aliases_complete = config.numpydoc_xref_aliases
 
 
 def resolve(app, env, node, contnode):
