@@ -116,8 +116,6 @@ def _wrong_in(name, page, pages, files):
                 yield f"links {address}, which is no address of the web"
             continue
         file, anchor = _target(name, address)
-        if file.startswith(OF_OTHERS):
-            continue
         if file not in files:
             yield f"links {address}, which is not there"
         elif anchor and file in pages and not file.startswith(WITH_VALUES) and anchor not in pages[file].anchors:

@@ -13,7 +13,7 @@ from axe import findings
 from builder.whole import build
 from sites import Quiet, serving, visited
 
-pytestmark = pytest.mark.wide
+pytestmark = [pytest.mark.wide, pytest.mark.timeout(900)]  # a build reads 430 pages
 
 #: a page of each kind; of kinds that the small form lacks, the site that `.ci/full` builds has one
 PAGES = ("index", "how_to/live", "how_to/scenes", "papers/abbott_okamura_2005", "paddle/owners_guide", "project/licences")
