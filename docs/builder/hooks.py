@@ -31,7 +31,7 @@ def describe(app, page, _template, context, tree):
 
 def open_pictures(app, page, _template, context, tree):
     """Let a link to a picture open it, where Sphinx would have it saved."""
-    context["body"] = context.get("body", "").replace(' download=""', "")
+    context["body"] = re.sub(r' download=""(?= href="[^"]+\.(?:png|svg)")', "", context.get("body", ""))
 
 
 def shortened(text):

@@ -13,11 +13,24 @@ from axe import findings
 from builder.whole import build
 from sites import Quiet, serving, visited
 
+import hapticlab as hl
+
 pytestmark = [pytest.mark.wide, pytest.mark.timeout(900)]  # a build reads 430 pages
 
 #: a page of each kind; of kinds that the small form lacks, the site that `.ci/full` builds has one
-PAGES = ("index", "how_to/live", "how_to/scenes", "papers/abbott_okamura_2005", "paddle/owners_guide", "project/licences")
-OF_THE_WHOLE = ("reference/design/coupler", "reference/commands", "reference/chapter", "reference/glossary", "gallery/index")
+PAGES = (
+    "index", "gallery/wall", "labs/index", "labs/02_virtual_wall", "how_to/live", "how_to/scenes", "papers/abbott_okamura_2005",
+    "paddle/owners_guide", "project/licences",
+)  # fmt: skip
+OF_THE_WHOLE = (
+    "gallery/detents",
+    "gallery/figures/passivity",
+    "reference/design/coupler",
+    "reference/commands",
+    "reference/chapter",
+    "reference/glossary",
+    "gallery/index",
+)
 ARTIFACTS = Path(os.environ["HAPTICLAB_ARTIFACTS"]) if "HAPTICLAB_ARTIFACTS" in os.environ else None
 #: for how long MathJax may set a page [ms]
 TYPESET = 20_000
@@ -33,6 +46,13 @@ def site(complete, tmp_path_factory):
         build(folder, quick=True, say=lambda words: None)
     with serving(partial(Quiet, directory=folder)) as server:
         yield f"http://127.0.0.1:{server.server_port}", Path(folder)
+
+
+def expect(what):
+    """What Playwright waits for; it is not there wherever these tests are collected."""
+    from playwright.sync_api import expect
+
+    return expect(what)
 
 
 def looked_at(browser, site, name, *, width, scheme):
@@ -92,3 +112,44 @@ def test_a_live_view_of_a_page_moves(browser, site):
         )
         assert canvas.screenshot() != shot
         page.mouse.up()
+
+
+def test_the_wall_of_the_front_page_chatters_under_the_pointer_and_a_soft_one_does_not(browser, site):
+    with visited(browser, width=WIDTHS["wide"]) as page:
+        page.goto(f"{site[0]}/index.html")
+        frame = page.locator("iframe").content_frame
+        frame.locator(".hl-live:not(.hl-silent)").wait_for()
+        stage, found = frame.locator(".hl-stage"), {}
+        stage.scroll_into_view_if_needed()
+        for stiffness in (4000, 500):
+            frame.locator(".hl-entry").first.fill(str(stiffness))
+            frame.locator(".hl-entry").first.press("Enter")
+            box = stage.bounding_box()
+            middle, half = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+            page.mouse.move(middle, half)
+            page.mouse.down()
+            page.mouse.move(middle + 0.11 * box["width"], half, steps=8)
+            page.wait_for_timeout(500)
+            page.keyboard.press("r")
+            page.wait_for_timeout(1500)
+            page.keyboard.press("r")
+            with page.expect_download() as saved:
+                page.keyboard.press("s")
+            found[stiffness] = hl.chatter(hl.records.Telemetry.load(saved.value.path()))
+            page.mouse.move(middle, half, steps=5)
+            page.mouse.up()
+    assert found[4000].amplitude > 0.5e-3 and found[4000].contacts_per_second > 20
+    assert found[500].amplitude < 0.02e-3 and found[500].contacts_per_second == 0
+
+
+def test_a_frame_takes_the_theme_and_the_values_that_its_page_gives(browser, site):
+    with visited(browser, color_scheme="light") as page:
+        page.goto(f"{site[0]}/gallery/wall.html")
+        page.locator("iframe").scroll_into_view_if_needed()
+        inside = page.locator("iframe").content_frame
+        inside.locator(".hl-live:not(.hl-silent)").wait_for()
+        page.evaluate("document.documentElement.dataset.theme = 'dark'")
+        expect(inside.locator("body")).to_have_css("background-color", "rgb(22, 22, 22)")
+        page.get_by_role("link", name="k=500N/m", exact=True).click()
+        expect(inside.locator(".hl-entry").first).to_have_value("500")
+        assert inside.locator("#hl-told").inner_text() == ""
