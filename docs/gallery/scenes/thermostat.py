@@ -7,7 +7,7 @@ heater switches.
 
 Labs: 16
 
-* `low=19.9K;high=20.1K`: A tenth of the band: the heater switches about ten times as often, and the handle vibrates.
+* `low=19.9;high=20.1`: A tenth of the band: the heater switches about ten times as often, and the handle vibrates.
 * `tau=2s`: A body that takes four times as long to warm up: the heater switches a quarter as often.
 """
 
