@@ -1,6 +1,7 @@
 """A whole build: sources are copied, pages are written and their examples run, Sphinx makes HTML, and the HTML is checked."""
 
 import contextlib
+import gc
 import io
 import shutil
 import tempfile
@@ -142,9 +143,21 @@ def _sphinx(source, made):
     folders = {"srcdir": source, "confdir": source / "builder", "outdir": made, "doctreedir": made.with_name("doctrees")}
     with patch_docutils(), docutils_namespace(), contextlib.redirect_stderr(warned):
         app = Sphinx(**folders, buildername="html", status=None, warning=warned, parallel=2)
-        app.build(force_all=True)
+        with _rare_collection():
+            app.build(force_all=True)
     if warned.getvalue().strip():
         raise BuildError(warned.getvalue())
+
+
+@contextlib.contextmanager
+def _rare_collection():
+    """Look for garbage rarely: Sphinx unpickles every page, and each look walks through all pages before it."""
+    before = gc.get_threshold()
+    gc.set_threshold(1_000_000, *before[1:])
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 def _embed_labs(folder, pyodide, say):
