@@ -12,10 +12,11 @@ from pico_faults import PICO_FAULTS
 from hapticlab.device.board.streaming import LEASH
 from hapticlab.device.bring_up.steps import table
 from hapticlab.device.link.messages import FAULTS, RESULTS
+from hapticlab.device.wirings import BUILDS, build
 
 ROOT = Path(__file__).parents[1]
-FAULTS_PAGE, GUIDE, SAFETY = (
-    (ROOT / "docs" / "paddle" / name).read_text("utf-8") for name in ("faults.md", "owners_guide.md", "SAFETY.md")
+FAULTS_PAGE, GUIDE, SAFETY, BOARDS = (
+    (ROOT / "docs" / "paddle" / name).read_text("utf-8") for name in ("faults.md", "owners_guide.md", "SAFETY.md", "boards.md")
 )
 
 
@@ -99,6 +100,24 @@ class TestSafety:
     def test_it_says_first_what_cannot_be_promised(self):
         assert "Software is no emergency stop. The switch in the supply of the motor is." in SAFETY[:200]
         assert "must read this page" in SAFETY and "sign" in SAFETY
+
+
+class TestEveryPage:
+    PAGES = sorted((ROOT / "docs" / "paddle").glob("*.md"))
+
+    @pytest.mark.parametrize("page", [page for page in PAGES if page.name != "index.md"], ids=lambda page: page.stem)
+    def test_it_says_at_the_top_that_nothing_was_on_a_bench(self, page):
+        top = page.read_text("utf-8")[:900]
+        assert "{include} emulated_only.txt" in top or re.search(r"\*\*Nothing [a-z ]+ was on a bench", top)
+
+    @pytest.mark.parametrize("name", BUILDS)
+    def test_the_pins_of_a_wiring_are_those_of_the_firmware(self, name):
+        line = next(line for line in BOARDS.splitlines() if line.startswith("| ") and f"`{name}`" in line)
+        pins = [int(pin) for pin in re.findall(r"\b(?:D|GP)(\d+)", line)]
+        wiring = build(name).wiring
+        if wiring.drive != "SHIFT_REGISTER":  # the shield fixes its pins
+            assert set(wiring.motor_pins) <= set(pins)
+            assert ("enable" in line) == (wiring.drive == "TWO_INPUTS_ENABLE")
 
 
 class TestGuide:

@@ -1,7 +1,7 @@
 """Where the live view runs: `pip install notebook marimo`, then `python tests/benchmarks/front_ends.py`.
 
 A cell with a live view runs in each front end, in Chromium; a hand drags the handle, and the row says what the view says
-then. docs/where_it_runs.md has the results. ``--look FOLDER`` keeps a picture of each.
+then. docs/how_to/live.md has the results. ``--look FOLDER`` keeps a picture of each.
 """
 
 import argparse
