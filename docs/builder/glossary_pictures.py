@@ -257,11 +257,11 @@ def fixture(axes):
 
 def wall_map(axes):
     B = np.linspace(0, 4, 100)
-    passive, stable = 1 + 0.4 * B, 2.2 + 2.2 * np.sin(0.8 * B)
+    passive, stable = 1.9 - 0.4 * B, 2.2 + 2.2 * np.sin(0.8 * B)  # Eq. (23.10): K T/2 < b - |B|
     axes.fill_between(B, 0, np.minimum(passive, stable), color="#dbe6f0", lw=0)
     axes.fill_between(B, np.minimum(passive, stable), stable, color="#f3f6fa", lw=0)
     curve(axes, B, stable, WARM)
-    axes.text(1.2, 0.4, "passive")
+    axes.text(0.5, 0.5, "passive")
     axes.text(1.4, 2.3, "stable")
     axes.text(0.1, 4.3, "chatters", color=WARM)
     axes.set_ylim(0, 5)

@@ -172,7 +172,7 @@ class ConstantLevels(ShowsItself):
     Parameters
     ----------
     levels : sequence of float
-        Levels of the stimulus, in the unit of the task.
+        Levels of the trials, ln(comparison/standard), one or more.
     repeats : int
         How often each is presented, >= 1.
     seed : int

@@ -215,8 +215,8 @@ def gil_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Lim
         Its m, b, T, delay and hand are read.
     B : float
         Virtual damper of either sign [N s/m].
-    law : {"zoh", "half_sample", "backward_difference", "ellis"}
-        Law of the spring.
+    law : {"zoh"}
+        The plain spring, Eq. (23.1). The formula is for no other law, and any other name is refused.
 
     Raises
     ------

@@ -205,7 +205,7 @@ def deadbeat_gains(paddle: AnyDevice, *, hand: Hand | None = None) -> DeadbeatGa
     Parameters
     ----------
     paddle : Device or paddle
-        Its m, b and T are read.
+        Its m, b, T and delay are read, and its counts_per_metre and force_max if it has them.
     hand : Hand, optional
         Its spring, damper and mass are part of the model; by default that of the paddle.
 

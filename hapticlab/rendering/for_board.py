@@ -68,7 +68,7 @@ def wall_for_board(paddle: SimulatedPaddle, *, K: float, board: str | Board = "u
     K : float
         [N/m]
     board : str
-        Whose cycles are counted, by name: "uno" or "pico".
+        Whose cycles are counted, by name: "uno", "pico" or "cortex-m4f".
     **options
         B, hand, velocity, force_max of :func:`digital_wall`.
 

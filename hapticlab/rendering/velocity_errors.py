@@ -134,7 +134,7 @@ def velocity_errors(
         Of a simulated paddle with an encoder or noise, which records ``v_true``; without gaps.
     estimates : sequence of VelocityEstimate
     board : str
-        Whose cycles are counted, by name: "uno" or "pico".
+        Whose cycles are counted, by name: "uno", "pico" or "cortex-m4f".
 
     Returns
     -------

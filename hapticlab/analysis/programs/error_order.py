@@ -70,7 +70,8 @@ def order_of(
 ) -> Order:
     """The order in T of the error of the force that a scene's program computes, where T is short enough.
 
-    The error is that beside the force at the sample, for ``force_at="mean"`` beside the mean force of the period, in a
+    Nothing is run: the order of a method is the one that its record states, and the others follow from the equations. The
+    error is that beside the force at the sample, for ``force_at="mean"`` beside the mean force of the period, in a
     smooth motion of the handle.
 
     Parameters

@@ -266,7 +266,7 @@ class SerialPaddle(Paddle):
         Parameters
         ----------
         ticks : int, optional
-            Number of ticks that the record is to end after; by default it ends with the last sample that came.
+            How many ticks of the run the record keeps, from its first; by default every sample that came.
         """
         with self._lock:
             run = self._running()
@@ -407,7 +407,7 @@ class SerialPaddle(Paddle):
         every : int or None
             One sample in so many ticks is sent; None for as many as the link carries.
         check_fit : bool
-            Whether a program that is too slow or too large for the board is rejected.
+            Whether a program that takes longer than the period is rejected; one that is too large always is.
         options : dict
             Options of :func:`hapticlab.compile`.
         """

@@ -16,7 +16,7 @@ from .intents import Intent, Together
 if TYPE_CHECKING:
     from typing import NoReturn
 
-    from ...base.annotations import Array, Number
+    from ...base.annotations import Number
 
 #: between a signal and the press of a button it tells of, Section 23.3.3 [s]
 REACTION = 0.18
@@ -124,17 +124,17 @@ class Reacting(ShowsItself, Intent):
 
     __add__ = __radd__ = with_path
 
-    def asked(self, t: float, seen: Any, intent: Array) -> float:
+    def asked(self, t: float, seen: Any, intent: float) -> float:
         """The plan's next intent [m], checked.
 
         Parameters
         ----------
         t : float
-            Time [s].
+            Time at which the intent is to be reached [s].
         seen : record
             What the hand has seen so far: arrays t, x, v, F and the watched states.
-        intent : array
-            Intents asked for before [m].
+        intent : float
+            Where the hand means to be now [m].
         """
         place: Any = self.plan(t, seen, intent)
         if not np.isscalar(place) or not np.isfinite(place):

@@ -177,7 +177,7 @@ class TwoPaddles(ShowsItself):
         Parameters
         ----------
         seconds : float or text
-            [s], > 0, or a text with its unit.
+            [s], >= 0, or a text with its unit.
         """
         seconds = number("seconds", seconds, "s", "a wait", least=0, error=PaddleError)
         self._require_run()
