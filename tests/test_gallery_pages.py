@@ -52,7 +52,7 @@ def test_the_code_that_is_written_out_gives_the_scene_of_the_library(name):
     assert names["scene"] == scene()
 
 
-@pytest.mark.always("wall", "detents", "click", "thin_plate")
+@pytest.mark.always("wall", "detents", "pen", "thin_plate")
 @pytest.mark.parametrize("name", SCENES)
 def test_a_page_changes_values_that_the_scene_has(name):
     source, names = SCENES[name], {}
