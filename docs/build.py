@@ -2,7 +2,10 @@
 
 import sys
 
-from builder.command import main
+try:
+    from builder.command import main
+except ModuleNotFoundError as missing:
+    sys.exit(f'{missing.name} is not installed; do: {sys.executable} -m pip install -e ".[docs]"')
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -1,10 +1,16 @@
 """The builder of the site: examples with their outcomes, and what it finds wrong in HTML. tests/browser/test_documentation.py
 builds a site and opens it."""
 
+import json
+import multiprocessing
 import re
+import runpy
+import shutil
+import sys
+from concurrent.futures import ProcessPoolExecutor
 
 import pytest
-from builder import check, examples, from_the_root, licences, outcomes, whole
+from builder import check, examples, from_the_root, lab_outcomes, licences, outcomes, whole
 from builder.command import main
 
 PAGE = """# A page
@@ -113,8 +119,58 @@ def test_a_folder_with_anything_else_is_kept(tmp_path, capsys):
     assert "no site of an earlier build" in capsys.readouterr().out and (tmp_path / "mine.txt").exists()
 
 
-def test_every_part_has_a_licence_text():
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        ([str(whole.DOCS / "_build")], "is inside .*name another folder"),
+        (["{tmp}/file/site"], "cannot be written: Not a directory"),
+        (["{tmp}/site", "--pyodide", "{tmp}/none.tar.bz2"], "none.tar.bz2 is not there"),
+    ],
+)
+def test_what_cannot_be_built_is_told_before_pages_are_written(tmp_path, monkeypatch, capsys, words, told):
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(whole, "_write_pages", lambda *_: pytest.fail("pages are written"))
+    assert main([word.format(tmp=tmp_path) for word in words]) == 1
+    assert re.search(told, capsys.readouterr().out)
+
+
+def test_a_site_that_is_cut_off_while_it_is_copied_is_replaced(tmp_path, monkeypatch):
+    made, folder = tmp_path / "made", tmp_path / "site"
+    (made / "deep").mkdir(parents=True)
+    (made / "deep" / "new.html").touch()
+    (folder / "old").mkdir(parents=True)
+    for name in (whole.MARK, "old.html", "old/page.html"):
+        (folder / name).touch()
+    with monkeypatch.context() as cut_off:
+        cut_off.setattr(shutil, "copytree", lambda *_, **__: (folder / "half.html").touch())
+        whole._replace(folder, made)
+    whole._check_folder(folder)
+    whole._replace(folder, made)
+    assert {path.relative_to(folder).as_posix() for path in folder.rglob("*")} == {whole.MARK, "deep", "deep/new.html"}
+
+
+def test_without_its_packages_the_builder_says_how_to_install_them(monkeypatch):
+    monkeypatch.setitem(sys.modules, "builder.command", None)
+    with pytest.raises(SystemExit, match=r"builder.command is not installed; do: .* -m pip install -e \".\[docs\]\""):
+        runpy.run_path(str(whole.DOCS / "build.py"))
+
+
+@pytest.mark.wide
+def test_a_cell_of_a_lab_that_fails_is_named(tmp_path):
+    notebook = tmp_path / "99_lab.ipynb"
+    cells = [{"cell_type": "code", "id": one, "source": one} for one in ("a = 0", "1 / a\na")]
+    notebook.write_text(json.dumps({"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}))
+    told = r"99_lab.ipynb, the cell '1 / a': ZeroDivisionError: division by zero"
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, spawn) as pool, pytest.raises(examples.ExampleError, match=told):
+        pool.submit(lab_outcomes.of_notebook, notebook).result()
+
+
+def test_every_part_has_the_texts_of_all_licences_that_it_names():
     assert [part.name for part in licences.PARTS if len(part.text) < 900] == []
+    (icons,) = (part.text for part in licences.PARTS if part.name.startswith("Font Awesome"))
+    for text in ("Permission is hereby granted", "SIL OPEN FONT LICENSE", "Section 8 -- Interpretation"):
+        assert text in icons
 
 
 def test_pages_beyond_docs_are_in_the_site():

@@ -6,6 +6,8 @@ import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .examples import ExampleError
+
 #: what a page can show, the richest first
 KINDS = ("text/markdown", "text/html", "text/plain")
 VIEW = "application/vnd.jupyter.widget-view+json"
@@ -37,8 +39,8 @@ def outcomes(sources):
 
     Raises
     ------
-    Exception
-        What a cell raised.
+    ExampleError
+        For the first cell that raises, with its first line.
     """
     from IPython.core.displayhook import CapturingDisplayHook
     from IPython.core.displaypub import CapturingDisplayPublisher
@@ -54,7 +56,9 @@ def outcomes(sources):
                 shell.display_pub, outputs = CapturingDisplayPublisher(), []
                 shell.display_trap.hook = CapturingDisplayHook(shell, outputs)
                 with capture_output(stdout=True, stderr=True, display=False) as text:
-                    shell.run_cell(source).raise_error()
+                    ran = shell.run_cell(source)
+                if problem := ran.error_before_exec or ran.error_in_exec:
+                    raise ExampleError(f"the cell {source.partition(chr(10))[0]!r}: {type(problem).__name__}: {problem}")
                 every = [*shell.display_pub.outputs, *outputs]
                 found.append(Outcome(text.stdout, [one for each in every for one in richest(each["data"])], [*opened]))
                 opened.clear()
@@ -101,4 +105,8 @@ def of_notebook(path):
 
     cells = [cell for cell in read(path)["cells"] if cell["cell_type"] == "code"]
     sys.path.insert(0, str(Path(path).parent))
-    return dict(zip([cell["id"] for cell in cells], outcomes(["".join(cell["source"]) for cell in cells]), strict=True))
+    try:
+        found = outcomes(["".join(cell["source"]) for cell in cells])
+    except ExampleError as problem:
+        raise ExampleError(f"{Path(path).name}, {problem}") from problem
+    return dict(zip([cell["id"] for cell in cells], found, strict=True))

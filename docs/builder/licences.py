@@ -50,9 +50,9 @@ PARTS = (
     Part(
         "Font Awesome Free",
         ("scripts/fontawesome.js*", "vendor/fontawesome/*"),
-        holder="Copyright Fonticons, Inc. (https://fontawesome.com)\n\nThe icons are under CC BY 4.0 "
-        "(https://creativecommons.org/licenses/by/4.0/), the fonts under the SIL OFL 1.1, the code under the MIT License.",
-        texts=("mit.txt", "ofl-1.1.txt"),
+        holder="Copyright Fonticons, Inc. (https://fontawesome.com)\n\nThe code is under the MIT License, the fonts "
+        "are under the SIL OFL 1.1 and the icons under CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/), in this order.",
+        texts=("mit.txt", "ofl-1.1.txt", "cc-by-4.0.txt"),
     ),
     Part("sphinx-design", ("sphinx-design.min.css", "design-tabs.js"), package="sphinx-design"),
     Part("sphinx-copybutton", ("copybutton.css", "copybutton.js", "copybutton_funcs.js"), package="sphinx-copybutton"),

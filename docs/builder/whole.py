@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from hapticlab.errors import HapticlabError
+
 from . import anchors, check, outcomes
 from .examples import ExampleError
 from .frames import LIVE
@@ -58,15 +60,17 @@ def build(folder, *, quick=False, labs=False, pyodide=None, say=print):
     Raises
     ------
     BuildError
-        If the folder holds anything else, an example fails, Sphinx warns, or a link leads nowhere.
+        If the folder holds anything else, an example fails, Sphinx warns, a link leads nowhere, or the labs cannot be embedded.
     """
-    began = time.monotonic()
+    folder, began = Path(folder).resolve(), time.monotonic()
     _check_folder(folder)
     with tempfile.TemporaryDirectory() as aside:
         source, made = Path(aside, "docs"), Path(aside, "site")
         shutil.copytree(DOCS, source, ignore=shutil.ignore_patterns("__pycache__"))
         clock = _Clock(say)
         if labs:
+            _embed_labs(Path(aside, IN_BROWSER), pyodide, say)  # first, since it asks for most
+            clock.say("the labs in a browser")
             (source / IN_BROWSER).mkdir()  # pages of labs link to it
         _write_pages(source, quick, clock)
         ran = _run_examples(source, quick)
@@ -76,8 +80,7 @@ def build(folder, *, quick=False, labs=False, pyodide=None, say=print):
             shutil.copytree(source / LIVE, made / LIVE)
         clock.say("Sphinx")
         if labs:
-            _embed_labs(made / IN_BROWSER, pyodide, say)
-            clock.say("the labs in a browser")
+            Path(aside, IN_BROWSER).rename(made / IN_BROWSER)
         counted = check.look_through(made, anchors.expected())
         static = made / "_static"
         shipped = [path.relative_to(static).as_posix() for path in static.rglob("*") if path.is_file()]
@@ -85,10 +88,8 @@ def build(folder, *, quick=False, labs=False, pyodide=None, say=print):
         if wrong:
             raise BuildError("\n".join(wrong))
         clock.say(f"{counted.pages} pages with {counted.words} words and {counted.links} links, all of which lead somewhere")
-        (made / MARK).touch()
         (made / ".nojekyll").touch()  # GitHub's pages would leave out folders that begin with an underscore
-        shutil.rmtree(folder, ignore_errors=True)
-        shutil.copytree(made, folder)
+        _replace(folder, made)
     seconds = time.monotonic() - began
     say(f"{folder}: built in {seconds:.0f} s without a warning")
     return Built(folder, counted, ran, seconds)
@@ -107,8 +108,28 @@ class _Clock:
 
 
 def _check_folder(folder):
+    """Make the folder, unless it holds anything but a site."""
+    if folder.is_relative_to(DOCS):
+        raise BuildError(
+            f"{folder} is inside {DOCS}, so that the next build would copy the site into itself; name another folder"
+        )
     if folder.exists() and not (folder.is_dir() and ((folder / MARK).exists() or not any(folder.iterdir()))):
         raise BuildError(f"{folder} is there and is no site of an earlier build; name an empty or a new folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise BuildError(f"{folder} cannot be written: {problem.strerror}; name another folder") from problem
+
+
+def _replace(folder, made):
+    """Put a site into its folder, which is marked throughout: what is cut off on the way is replaced by the same command."""
+    (folder / MARK).touch()
+    for path in folder.iterdir():
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        elif path.name != MARK:
+            path.unlink()
+    shutil.copytree(made, folder, dirs_exist_ok=True)
 
 
 def _write_pages(source, quick, clock):
@@ -163,4 +184,7 @@ def _rare_collection():
 def _embed_labs(folder, pyodide, say):
     from hapticlab.site.build import build_site
 
-    build_site(folder, pyodide=pyodide, say=say)
+    try:
+        build_site(folder, pyodide=pyodide, say=say)
+    except HapticlabError as problem:
+        raise BuildError(str(problem)) from problem
