@@ -103,12 +103,13 @@ class TestSafety:
 
 
 class TestEveryPage:
-    PAGES = sorted((ROOT / "docs" / "paddle").glob("*.md"))
+    DOCS = ROOT / "docs"
+    PAGES = (*sorted((DOCS / "paddle").glob("*.md")), DOCS / "tutorial/paddle_on_the_desk.md", DOCS / "how_to/troubleshooting.md")
 
     @pytest.mark.parametrize("page", [page for page in PAGES if page.name != "index.md"], ids=lambda page: page.stem)
     def test_it_says_at_the_top_that_nothing_was_on_a_bench(self, page):
-        top = page.read_text("utf-8")[:900]
-        assert "{include} emulated_only.txt" in top or re.search(r"\*\*Nothing [a-z ]+ was on a bench", top)
+        top = page.read_text("utf-8")[:1200]  # written out, because a reader of the wheel sees no included file
+        assert re.search(r"Nothing here was tried on a bench|\*\*Nothing [a-z ]+ was on a bench", top)
 
     @pytest.mark.parametrize("name", BUILDS)
     def test_the_pins_of_a_wiring_are_those_of_the_firmware(self, name):
