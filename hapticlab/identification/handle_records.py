@@ -66,7 +66,7 @@ class HandleRecord(ShowsItself):
         Parameters
         ----------
         log : Telemetry
-            Of a motion into a wall.
+            Of the free handle, with the weight on a thread that pulls towards positive x.
         mass : float
             Of the weight [kg], > 0.
         at_rest : bool
@@ -188,7 +188,7 @@ def chirp_response(
     counts_per_metre : float, optional
         Encoder counts per metre [1/m], > 0.
     known : dict of str to float, optional
-        Constants that are known and not fitted, by name, in SI.
+        Constants that are not sought, of m, b, coulomb, delay, in SI.
     at_rest : bool
         Whether the handle rests at the first sample.
     confidence : float

@@ -71,7 +71,7 @@ class MotorCurve(Estimated):
         Parameters
         ----------
         base : PaddleProfile or None
-            The profile whose constants they replace.
+            Not read: what a scale found needs no other constant.
         """
         source = f"identified from {len(self.duties)} readings of a scale, {self.confidence:.0%} interval"
         return [bounded(name, self[name], source) for name in NAMES if name != "offset"]

@@ -217,7 +217,7 @@ class PaddleProfile(ShowsItself):
         Parameters
         ----------
         path : str or path
-            The file to write; one that is there is replaced.
+            The file to write, with ``.json`` added where missing; one that is there is replaced.
         """
         return write_profile(self, path)
 
