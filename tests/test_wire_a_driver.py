@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hapticlab.cli.options import parser
 from hapticlab.compiler.boards.board_pins import PINS
-from hapticlab.device.setup.built import DRIVE_KEYS, OTHER
+from hapticlab.device.setup.built import DRIVE_KEYS, OTHER, ask_built
 from hapticlab.device.wiring import Wiring, pin_problem
 from hapticlab.device.wirings import BUILDS
 
@@ -34,6 +34,30 @@ def test_the_kinds_are_those_that_the_firmware_drives():
     assert f"answer `{OTHER}`" in PAGE
     kinds = dict(re.findall(r"\| ([A-Z_]{6,}) \| `(\w+)` \|", PAGE))
     assert kinds == {drive: key for key, drive in DRIVE_KEYS.items()}
+
+
+class Reader:
+    """A person who answers each question as the page does, and cannot answer another."""
+
+    def __init__(self, lines):
+        self.lines = list(lines)
+
+    def ask(self, question):
+        printed, answer = self.lines.pop(0).split("  ")
+        assert question.startswith(printed)
+        return answer
+
+    def choose(self, question, options):
+        answer = self.ask(question)
+        assert answer in options
+        return answer
+
+
+def test_the_questions_about_another_driver_are_those_of_calibrate():
+    (asked,) = re.findall(r"^```text\n(Which paddle.*?)^```$", PAGE, re.M | re.S)
+    reader = Reader(asked.splitlines())
+    assert ask_built(reader, "uno").wiring == Wiring("QUADRATURE", "TWO_INPUTS", (5, 6), (2, 3), 31_372)
+    assert reader.lines == []
 
 
 def test_pins_and_frequencies_are_those_of_the_boards():
