@@ -6,9 +6,9 @@ pip downloads.
 
 from __future__ import annotations
 
+import email
 import importlib.metadata
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -92,12 +92,14 @@ def collect_wheels(
     """
     uv, folder = _tools(), Path(folder)
     before = _written_before(folder)
+    if wheel is None:
+        _check_extras(importlib.metadata.metadata("hapticlab"), extras)
     targets = [*dict.fromkeys(SYSTEMS.get(name, name) for name in systems)]
     what = f"hapticlab[{','.join(extras)}]" if extras else "hapticlab"
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".") as aside:  # in the folder: moving is then renaming
         own, missing = wheel_for(aside, targets, wheel)
-        _check_extras(own, extras)
+        _check_extras(_metadata(own), extras)
         say(f"hapticlab itself: {own.name}, {own.stat().st_size / 1e6:.1f} MB")
         served = []
         for python in pythons:
@@ -152,10 +154,14 @@ def _written_before(folder):
     return {name for name in known if name.endswith(".whl") and Path(name).name == name}
 
 
-def _check_extras(own, extras):
+def _metadata(own):
     with zipfile.ZipFile(own) as packed:
-        metadata = packed.read(next(name for name in packed.namelist() if name.endswith(".dist-info/METADATA"))).decode()
-    known = re.findall(r"^Provides-Extra: (\S+)", metadata, re.M)
+        text = packed.read(next(name for name in packed.namelist() if name.endswith(".dist-info/METADATA")))
+    return email.message_from_bytes(text)
+
+
+def _check_extras(metadata, extras):
+    known = metadata.get_all("Provides-Extra", [])
     if unknown := [name for name in extras if name not in known]:
         raise CourseError(f"{', '.join(unknown)} is not an extra of hapticlab; its extras are {', '.join(known)}")
 

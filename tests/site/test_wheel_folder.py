@@ -90,6 +90,9 @@ def test_what_is_missing_to_begin_with_is_told(index, tmp_path, monkeypatch):
         collect_wheels(tmp_path / "mine", wheel=index)
     with pytest.raises(CourseError, match="notebok is not an extra of hapticlab; its extras are notebook"):
         collect_wheels(tmp_path / "room", extras=["notebok"], wheel=index)
+    with pytest.raises(CourseError, match="notebok is not an extra of hapticlab; its extras are .*notebook"):
+        collect_wheels(tmp_path / "other", extras=["notebok"])  # before minutes of compiling
+    assert not (tmp_path / "other").exists()
     monkeypatch.setattr(wheel_folder.shutil, "which", lambda *_, **__: None)
     with pytest.raises(EngineMissingError, match=r'pip install "hapticlab\[wheels\]"'):
         collect_wheels(tmp_path / "room", wheel=index)
