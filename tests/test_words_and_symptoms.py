@@ -4,6 +4,7 @@ import io
 import re
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 import sympy as sp
@@ -103,7 +104,9 @@ def of_python():
         bool(x(n) > sp.Symbol("x_o"))
     with pytest.raises(ModuleNotFoundError) as module:
         __import__("no_such_module")
-    return f"{relational.value}\n{module.value}".replace("no_such_module", "hapticlab")
+    with pytest.raises(AttributeError) as attribute:
+        ModuleType("no_such_module").SimulatedPaddle  # noqa: B018 what an empty folder of that name gives
+    return f"{relational.value}\n{module.value}\n{attribute.value}".replace("no_such_module", "hapticlab")
 
 
 def quoted(page):
