@@ -12,6 +12,7 @@ from builder.library_code import library_code
 import hapticlab as hl
 from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import read
+from hapticlab.widgets.spans import spans
 
 ROOT = Path(__file__).parents[1]
 SCENES = gallery.sources(ROOT / "docs" / gallery.SCENES)
@@ -56,13 +57,24 @@ def test_the_code_that_is_written_out_gives_the_scene_of_the_library(name):
 @pytest.mark.parametrize("name", SCENES)
 def test_a_page_changes_values_that_the_scene_has(name):
     source, names = SCENES[name], {}
-    exec(source.code.split("paddle = ")[0], names)
+    code, paddle = source.code.split("paddle = ")
+    exec(code, names)
+    sliders = re.search(r"sliders=(\{.*\})", paddle)
+    ends = {one.name: one for one in spans(hl.compile(names["scene"], T=1e-3), sliders and eval(sliders[1]))}
     assert source.changes and source.title and source.summary
     for address in source.changes:
         given = dict(part.split("=") for part in address.split(";"))
         assert not any(value.endswith("K") for value in given.values())  # a page reads no unit of temperature
         scene = names["scene"](**{key: float(value) if re.fullmatch(r"[\d.]+", value) else value for key, value in given.items()})
         assert scene != names["scene"], address
+        for key in given:
+            assert ends[key].low <= scene.values[key] <= ends[key].high * (1 + 1e-9), f"{name}: {address} is beyond its slider"
+
+
+def test_a_card_shows_the_bodies_of_a_scene_or_the_force_of_a_law():
+    assert gallery.thumbnail(hl.library.detents(), True).axes[0].get_title() == ""
+    line = gallery.thumbnail(hl.wall()(k=100, x_o="5 mm"), False).axes[0].lines[0].get_xydata()
+    assert line[:, 0].max() == pytest.approx(20) and line[:, 1].max() == pytest.approx(1.5)  # mm, and N of 15 mm
 
 
 def test_a_scene_without_a_file_is_named(tmp_path):

@@ -8,7 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
 
+import matplotlib.pyplot as plt
+import numpy as np
+
 import hapticlab as hl
+from hapticlab.base.drawing import HOUSE
 from hapticlab.compiler.boards.cost import cost
 
 from .examples import ExampleError
@@ -19,6 +23,8 @@ REPOSITORY = Path(__file__).parents[2]
 SCENES = Path("gallery", "scenes")
 #: the scene of the front page
 FIRST = "wall"
+#: picture on a card, in parts of its size in a notebook
+SMALLER = 0.7
 BOARDS = {"uno": "Arduino Uno", "pico": "Raspberry Pi Pico", "cortex-m4f": "Cortex-M4F at 168 MHz"}
 #: what is tried on a board where the library names nothing: the method that hl.compile chooses, then the cheapest
 TRIED: tuple[dict[str, str], ...] = ({}, {"method": "semi_implicit_euler"})
@@ -253,5 +259,22 @@ def _page_that_ran(source, folder):
     scene, html = run(source)
     title = f"{source.title}: a scene to move"
     live = frame(source.name, html, folder=folder.parent, page=f"gallery/{source.name}", title=title)
-    hl.mechanics.picture(scene).savefig(folder / "images" / f"{source.name}.svg", metadata={"Date": None})
+    thumbnail(scene, bool(source.entry)).savefig(folder / "images" / f"{source.name}.svg", metadata={"Date": None})
     return page(source, scene, live)
+
+
+def thumbnail(scene, of_library):
+    """Return a small picture for a card: what moves, or for a scene that is a law alone its force, there and back."""
+    if of_library or any(type(q).unit in ("m", "rad") for q in scene.coordinates):
+        figure = hl.mechanics.picture(scene)
+        figure.axes[0].set_title("")  # the card has it
+        figure.set_size_inches(SMALLER * figure.get_size_inches())
+        return figure
+    there_and_back = 0.01 * (1 - np.cos(np.pi * np.linspace(0, 2, 2001)))
+    log = hl.records.evaluate(hl.compile(scene, T=1e-3), x=there_and_back)
+    with plt.rc_context(HOUSE):
+        figure, axes = plt.subplots(figsize=(3.6, 1.67), layout="constrained")
+        axes.plot(1e3 * log.x, log.F)
+        axes.set(xlabel="x [mm]", ylabel="F [N]")
+        plt.close(figure)
+    return figure

@@ -11,4 +11,4 @@ import hapticlab as hl
 scene = hl.library.ball_on_the_paddle()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "ball_on_the_paddle.html")
+hl.share(scene, paddle, "ball_on_the_paddle.html", sliders={"e": (0, 1), "g": (1, 10), "m": (0.01, 0.1)})

@@ -11,4 +11,4 @@ import hapticlab as hl
 scene = hl.library.cart_pole()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "cart_pole.html")
+hl.share(scene, paddle, "cart_pole.html", sliders={"l": (0.1, 1.5), "g": (1, 10), "m": (0.01, 0.1)})

@@ -12,4 +12,4 @@ import hapticlab as hl
 scene = hl.library.four_bar()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "four_bar.html")
+hl.share(scene, paddle, "four_bar.html", sliders={"J_4": (1e-4, 1e-3), "B": (0, 2e-3)})

@@ -11,4 +11,4 @@ import hapticlab as hl
 scene = hl.library.gears()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "gears.html")
+hl.share(scene, paddle, "gears.html", sliders={"J_2": (0, 1e-5), "c": (0, 2e-4)})

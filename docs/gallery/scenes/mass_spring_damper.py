@@ -12,4 +12,4 @@ import hapticlab as hl
 scene = hl.library.mass_spring_damper()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "mass_spring_damper.html")
+hl.share(scene, paddle, "mass_spring_damper.html", sliders={"k": (0, 500), "b": (0, 3), "m": (0.05, 0.5)})

@@ -11,4 +11,4 @@ import hapticlab as hl
 scene = hl.library.pendulum_on_the_handle()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "pendulum_on_the_handle.html")
+hl.share(scene, paddle, "pendulum_on_the_handle.html", sliders={"l": (0.05, 0.8), "m": (0.01, 0.3)})

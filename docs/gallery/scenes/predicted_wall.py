@@ -17,4 +17,4 @@ import hapticlab as hl
 scene = hl.wall("half_sample")(k=4000, x_o="5 mm")
 
 paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "predicted_wall.html", sliders={"k": (100, 5000)})
+hl.share(scene, paddle, "predicted_wall.html", sliders={"k": (100, 5000), "x_o": (0, 0.02)})

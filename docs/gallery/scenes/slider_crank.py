@@ -11,4 +11,4 @@ import hapticlab as hl
 scene = hl.library.slider_crank()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "slider_crank.html")
+hl.share(scene, paddle, "slider_crank.html", sliders={"J": (1e-5, 3e-4), "c": (0, 1e-3)})

@@ -7,7 +7,7 @@ heater switches.
 
 Labs: 16
 
-* `low=19.9;high=20.1`: A tenth of the band: the heater switches about ten times as often, and the handle vibrates.
+* `low=19.9;high=20.1`: A tenth of the band: the heater switches more than eight times as often, and the handle vibrates.
 * `tau=2s`: A body that takes four times as long to warm up: the heater switches a quarter as often.
 """
 
@@ -25,4 +25,4 @@ heats = sp.Eq(tau * theta.diff(t), hot * on(n) - theta)
 scene = hl.Scene(force=F_r * on(n), eom=[relay, heats], watch={"theta": theta, "on": on(n)}, name="thermostat")
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "thermostat.html")
+hl.share(scene, paddle, "thermostat.html", sliders={"low": (15, 20), "high": (20, 25), "tau": (0.1, 3)})

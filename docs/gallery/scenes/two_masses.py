@@ -11,4 +11,4 @@ import hapticlab as hl
 scene = hl.library.two_masses()
 
 paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, hand=hl.Hand("pinch"))
-hl.share(scene, paddle, "two_masses.html")
+hl.share(scene, paddle, "two_masses.html", sliders={"k": (10, 300), "b": (0, 2)})
