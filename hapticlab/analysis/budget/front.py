@@ -95,7 +95,7 @@ def front(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> quick = {"T": 1e-3, "law": "half_sample", "velocity": "filtered", "tau": 2e-3}
+    >>> quick = {"T": 1e-3, "law": "zoh", "velocity": "backward"}
     >>> slow = {**quick, "T": 2e-3}
     >>> hl.design.front(hl.design.task("wall"), {"quick": quick, "slow": slow}).front
     ('slow', 'quick')
