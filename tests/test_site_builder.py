@@ -74,11 +74,22 @@ def test_a_picture_gives_way_to_the_figure_that_the_example_draws():
 
 @pytest.mark.parametrize(
     "code, line, words",
-    [("a = 1\na.b", 4, "no attribute 'b'"), ("def f(:", 3, "SyntaxError"), ("import warnings\nwarnings.warn('old')", 4, "old")],
+    [
+        ("a = 1\na.b", 4, "no attribute 'b'"),
+        ("def f(:", 3, "SyntaxError"),
+        ("import warnings\nwarnings.warn('old')", 4, "old"),
+        ("exit(3)", 3, "SystemExit: 3"),
+    ],
 )
 def test_an_example_that_fails_is_named_with_its_line(code, line, words):
     with pytest.raises(examples.ExampleError, match=rf"(?s)page.md, line {line}: .*{words}"):
         examples.run(f"# Page\n```python\n{code}\n```\n", "page.md")
+
+
+@pytest.mark.parametrize("fenced", ["  ```python\n  1\n  ```", "~~~python\n1\n~~~", "```python \n1\n```", "```python\n1"])
+def test_an_example_that_would_not_run_is_named(fenced):
+    with pytest.raises(examples.ExampleError, match=r"page.md, line 2: only ```python"):
+        examples.run(f"# Page\n{fenced}\n", "page.md")
 
 
 NOT_HERE = "loads //example.org/b.png, which is elsewhere"

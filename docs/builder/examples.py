@@ -20,6 +20,8 @@ import hapticlab as hl
 from hapticlab.base.drawing import HOUSE, STYLES
 
 BLOCK = re.compile(r"^```python\n(.*?)^```$\n?", re.M | re.S)
+#: where a block of Python begins, however it is fenced
+FENCE = re.compile(r"^[ \t]*(?:`{3,}|~{3,})[ \t]*python\b", re.M)
 #: lines that differ in grey print too
 LINES = cycler(**{key: [style[key] for style in STYLES] for key in ("color", "linestyle")})
 
@@ -66,7 +68,7 @@ def run(text, name):
     Raises
     ------
     ExampleError
-        For the first example that raises or warns, with its line.
+        For the first example that raises or warns, with its line, and for one that would not run because of its fence.
 
     Examples
     --------
@@ -77,7 +79,12 @@ def run(text, name):
     Traceback (most recent call last):
     builder.examples.ExampleError: division.md, line 4: ZeroDivisionError: division by zero
     """
-    page = Page(text)
+    page, starts = Page(text), {found.start() for found in BLOCK.finditer(text)}
+    if missed := [found for found in FENCE.finditer(text) if found.start() not in starts]:
+        line = text.count("\n", 0, missed[0].start()) + 1
+        raise ExampleError(
+            f"{name}, line {line}: only ```python at the beginning of a line, and closed by ```, runs; fence it so"
+        )
     settings = mpl.rc_context(HOUSE | {"axes.prop_cycle": LINES, "backend": "agg"})
     with settings, tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -95,7 +102,7 @@ def _run_block(found, name, page):
     try:
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(io.StringIO()), _noted() as (shown, views):
             last = _execute(ast.parse("\n" * first_line + found[1], name), name, page.names)
-    except Exception as problem:
+    except (Exception, SystemExit) as problem:
         line = _line(problem, name) or first_line + 1
         raise ExampleError(f"{name}, line {line}: {type(problem).__name__}: {problem}") from problem
     made = [value for value in (*shown, *page.names.values(), last) if isinstance(value, Figure) and id(value) not in known]
