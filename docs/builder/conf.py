@@ -1,5 +1,7 @@
 """Sphinx's settings; ``whole.py`` hands the folder of sources over."""
 
+from pathlib import Path
+
 import hapticlab
 from builder.public_names import classes
 
@@ -39,7 +41,7 @@ html_static_path = ["static"]
 html_extra_path = ["extra"]  # for addresses without a page
 templates_path = ["templates"]
 html_css_files = ["site.css"]
-html_search_scorer = "static/search.js"
+html_search_scorer = str(Path(__file__).parent / "static/search.js")
 html_js_files = [("site.js", {"defer": "defer"}), "frames.js"]
 html_context = {"default_mode": "auto"}  # as the reader's system has it
 html_copy_source = html_show_sourcelink = False
