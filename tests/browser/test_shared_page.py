@@ -127,6 +127,7 @@ def test_a_recording_is_a_file_that_python_reads(opened, tmp_path):
     stage = page.locator(".hl-stage")
     for key in ("r", *["ArrowRight"] * 6):
         stage.press(key)
+    page.wait_for_function(f"() => ({TIME})() >= 0")  # before the first frame no time is shown
     begun = page.evaluate(TIME)
     page.wait_for_function(f"() => ({TIME})() > {begun} + 0.3")
     stage.press("r")
