@@ -19,6 +19,8 @@ from matplotlib.figure import Figure
 import hapticlab as hl
 from hapticlab.base.drawing import HOUSE, STYLES
 
+from . import views
+
 BLOCK = re.compile(r"^```python\n(.*?)^```$\n?", re.M | re.S)
 #: where a block of Python begins, however it is fenced
 FENCE = re.compile(r"^[ \t]*(?:`{3,}|~{3,})[ \t]*python\b", re.M)
@@ -38,7 +40,7 @@ class Example:
     end: int
     printed: str
     figures: list[Figure]
-    views: list[tuple[tuple, dict]]
+    views: list[dict]
 
 
 @dataclass
@@ -100,13 +102,13 @@ def _run_block(found, name, page):
     first_line = page.text.count("\n", 0, found.start(1))
     printed = io.StringIO()
     try:
-        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(io.StringIO()), _noted() as (shown, views):
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(io.StringIO()), _noted() as (shown, opened):
             last = _execute(ast.parse("\n" * first_line + found[1], name), name, page.names)
     except (Exception, SystemExit) as problem:
         line = _line(problem, name) or first_line + 1
         raise ExampleError(f"{name}, line {line}: {type(problem).__name__}: {problem}") from problem
     made = [value for value in (*shown, *page.names.values(), last) if isinstance(value, Figure) and id(value) not in known]
-    return Example(found[1], found.end(), printed.getvalue(), list(dict.fromkeys(made)), views)
+    return Example(found[1], found.end(), printed.getvalue(), list(dict.fromkeys(made)), opened)
 
 
 def _execute(tree, name, names):
@@ -131,18 +133,15 @@ def _line(problem, name):
 @contextlib.contextmanager
 def _noted():
     """Note what ``hl.show`` and ``hl.live`` are asked to show, since a page shows it in its own way."""
-    shown, opened, live, show = [], [], hl.live, hl.show
-
-    def noted_live(*given, **options):
-        opened.append((given, options))
-        return live(*given, **options)
+    shown, show = [], hl.show
 
     def noted_show(figure, *, alt):
         figure.alt = alt
         shown.append(figure)
 
-    hl.live, hl.show = noted_live, noted_show
+    hl.show = noted_show
     try:
-        yield shown, opened
+        with views.noted() as opened:
+            yield shown, opened
     finally:
-        hl.live, hl.show = live, show
+        hl.show = show

@@ -6,6 +6,9 @@ import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hapticlab.errors import HapticlabError
+
+from . import views
 from .examples import ExampleError
 
 #: what a page can show, the richest first
@@ -51,7 +54,7 @@ def outcomes(sources):
     shell.display_formatter.set_trait("active_types", [*KINDS])  # as a notebook, not as a terminal
     found = []
     try:
-        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), views() as opened:
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), views.noted() as opened:
             for source in sources:
                 shell.display_pub, outputs = CapturingDisplayPublisher(), []
                 shell.display_trap.hook = CapturingDisplayHook(shell, outputs)
@@ -60,7 +63,7 @@ def outcomes(sources):
                 if problem := ran.error_before_exec or ran.error_in_exec:
                     raise ExampleError(f"the cell {source.partition(chr(10))[0]!r}: {type(problem).__name__}: {problem}")
                 every = [*shell.display_pub.outputs, *outputs]
-                found.append(Outcome(text.stdout, [one for each in every for one in richest(each["data"])], [*opened]))
+                found.append(Outcome(text.stdout, [one for each in every for one in richest(each["data"])], [*_shared(opened)]))
                 opened.clear()
     finally:
         InteractiveShell.clear_instance()
@@ -79,24 +82,11 @@ def richest(data):
         yield from [(kind, data[kind]) for kind in KINDS if kind in data][:1]
 
 
-@contextlib.contextmanager
-def views():
-    """Have ``hl.live`` also write each view as a shared file, into the list that is given."""
-    import hapticlab as hl
-
-    opened, live = [], hl.live
-
-    def shared(paddle, scene, **options):
-        kept = {name: value for name, value in options.items() if name not in ("rehearsal", "plain")}
-        with contextlib.suppress(hl.HapticlabError):  # a board, or a scene that a page cannot draw: the page shows the code alone
-            opened.append(hl.share(scene, paddle, "view.html", **kept).path.read_text("utf-8"))
-        return live(paddle, scene, **options)
-
-    hl.live = shared
-    try:
-        yield opened
-    finally:
-        hl.live = live
+def _shared(opened):
+    """Yield the shared file of each view; none of a board, or of a scene that a page cannot draw: there the code stands alone."""
+    for asked in opened:
+        with contextlib.suppress(HapticlabError):
+            yield views.shared_text(asked)
 
 
 def of_notebook(path):

@@ -45,8 +45,8 @@ def text_with_outcomes(ran, source, page):
                 parts.append(shown["between"] if not example.printed else "\n")
                 alt, at = shown["alt"], shown.end()
             parts.append(f"\n```{{image}} /{FIGURES}/{file.name}\n:alt: {' '.join(alt.split())}\n:class: figure\n```\n")
-        for count, (given, options) in enumerate(example.views):
-            shown = frame_of_view(f"{name}-{count}" if count else name, given, options, source=source, page=page)
+        for count, asked in enumerate(example.views):
+            shown = frame_of_view(f"{name}-{count}" if count else name, asked, source=source, page=page)
             parts += [f"\n```{{raw}} html\n{shown}\n```\n"] if shown else []
     return "".join([*parts, ran.text[at:]])
 

@@ -1,5 +1,6 @@
-"""Live views that examples open: on a page each is a shared file in a frame, and the reader is its hand."""
+"""Live views that examples and labs open: on a page each is a shared file in a frame, and the reader is its hand."""
 
+import contextlib
 from tempfile import TemporaryDirectory
 
 import hapticlab as hl
@@ -11,16 +12,39 @@ from .frames import frame
 OF_A_NOTEBOOK = {"rehearsal", "plain"}
 
 
-def frame_of_view(name, given, options, *, source, page):
-    """Return the frame of what ``hl.live`` was asked to show; empty for a board, which no page drives."""
-    asked = dict(zip(("paddle", "scene"), given, strict=False)) | options
-    paddle, scene = asked.pop("paddle"), asked.pop("scene")
+@contextlib.contextmanager
+def noted():
+    """Note what ``hl.live`` is asked to show: the list that is given gets the arguments of each view, by name."""
+    opened, live = [], hl.live
+
+    def noted_live(*given, **options):
+        opened.append(dict(zip(("paddle", "scene"), given, strict=False)) | options)
+        return live(*given, **options)
+
+    hl.live = noted_live
+    try:
+        yield opened
+    finally:
+        hl.live = live
+
+
+def shared_text(asked):
+    """Return the text of the shared file of a noted view.
+
+    Raises
+    ------
+    PaddleError
+        For a board, which no page drives.
+    """
+    options = {name: value for name, value in asked.items() if name not in ("paddle", "scene", *OF_A_NOTEBOOK)}
     with TemporaryDirectory() as folder:
-        try:
-            shared = hl.share(
-                scene, paddle, f"{folder}/{name}.html", **{k: v for k, v in asked.items() if k not in OF_A_NOTEBOOK}
-            )
-        except PaddleError:
-            return ""
-        text = shared.path.read_text("utf-8")
-    return frame(name, text, folder=source, page=page.removesuffix(".md"), title=f"{scene.name}, live")
+        return hl.share(asked["scene"], asked["paddle"], f"{folder}/view.html", **options).path.read_text("utf-8")
+
+
+def frame_of_view(name, asked, *, source, page):
+    """Return the frame of a noted view; empty for a board."""
+    try:
+        text = shared_text(asked)
+    except PaddleError:
+        return ""
+    return frame(name, text, folder=source, page=page.removesuffix(".md"), title=f"{asked['scene'].name}, live")
