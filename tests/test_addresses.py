@@ -8,8 +8,9 @@ import re
 from pathlib import Path
 
 import pytest
-from builder import arguments, chapter, commands, doctor, papers, public_names, reference, uses
+from builder import arguments
 from builder.anchors import expected
+from builder.pages import chapter, commands, doctor, papers, public_names, reference, uses
 from docutils.nodes import make_id
 
 import hapticlab as hl

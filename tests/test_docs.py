@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from builder.examples import run
+from builder.running.examples import run
 from matplotlib.image import imread
 
 import hapticlab as hl

@@ -4,10 +4,10 @@ import re
 from pathlib import Path
 
 import pytest
-from builder import gallery, lab_pages
-from builder.frames import frame
-from builder.lab_outcomes import Outcome
-from builder.library_code import library_code
+from builder.pages import gallery, lab_pages
+from builder.pages.library_code import library_code
+from builder.running.frames import frame
+from builder.running.lab_outcomes import Outcome
 
 import hapticlab as hl
 from hapticlab.course.labs import find_labs

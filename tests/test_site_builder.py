@@ -10,8 +10,10 @@ import sys
 from concurrent.futures import ProcessPoolExecutor
 
 import pytest
-from builder import check, examples, from_the_root, lab_outcomes, licences, outcomes, whole
+from builder import check, whole
 from builder.command import main
+from builder.pages import from_the_root, licences
+from builder.running import examples, lab_outcomes, outcomes
 
 PAGE = """# A page
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from builder.examples import run
+from builder.running.examples import run
 
 from hapticlab.cli.main import main
 from hapticlab.cli.options import parser

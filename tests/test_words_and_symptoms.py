@@ -8,8 +8,8 @@ from types import ModuleType
 
 import pytest
 import sympy as sp
-from builder import cross_links, glossary_pictures, sample_picture
-from builder.examples import run
+from builder.pages import cross_links, glossary_pictures, sample_picture
+from builder.running.examples import run
 
 from hapticlab import n, x
 from hapticlab.vocabulary import public

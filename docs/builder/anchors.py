@@ -4,8 +4,9 @@ from docutils.nodes import make_id
 
 from hapticlab.device.link.messages import FAULTS
 
-from . import arguments, commands, doctor
-from .public_names import callables, own_names
+from . import arguments
+from .pages import commands, doctor
+from .pages.public_names import callables, own_names
 
 
 def expected():

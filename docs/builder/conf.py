@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import hapticlab
-from builder.public_names import classes
+from builder.pages.public_names import classes
 
 project = "hapticlab"
 author = "the hapticlab developers"

@@ -1,6 +1,6 @@
 """What writes pages: each function gets the folder of the copied sources and writes Markdown, or HTML for ``live/``, into it."""
 
-from . import (
+from .pages import (
     chapter,
     commands,
     cross_links,

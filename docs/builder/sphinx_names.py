@@ -8,7 +8,7 @@ from docutils import nodes
 from sphinx import addnodes
 
 from .arguments import set_anchors
-from .public_names import own_names
+from .pages.public_names import own_names
 
 
 def setup(app):

@@ -12,15 +12,15 @@ from pathlib import Path
 
 from hapticlab.errors import HapticlabError
 
-from . import anchors, check, outcomes
-from .examples import ExampleError
-from .frames import LIVE
+from . import anchors, check
 from .generators import GENERATORS, INDEXES, LONG
-from .lab_pages import IN_BROWSER
-from .licences import without_a_part
+from .pages.lab_pages import IN_BROWSER
+from .pages.licences import without_a_part
+from .running import outcomes
+from .running.examples import ExampleError
+from .running.frames import LIVE
 
 DOCS = Path(__file__).resolve().parents[1]
-HERE = Path(__file__).resolve().parent
 #: in the folder of a build: what says that the next one may replace it
 MARK = ".hapticlab-docs"
 #: pages whose examples run in the small form

@@ -15,11 +15,11 @@ import hapticlab as hl
 from hapticlab.base.drawing import HOUSE
 from hapticlab.compiler.boards.cost import cost
 
-from .examples import ExampleError
-from .frames import frame
+from ..running.examples import ExampleError
+from ..running.frames import frame
 from .library_code import library_code
 
-REPOSITORY = Path(__file__).parents[2]
+REPOSITORY = Path(__file__).parents[3]
 SCENES = Path("gallery", "scenes")
 #: the scene of the front page
 FIRST = "wall"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .public_names import NAMESPACES, module_of, names_of, own_names
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 _DOTTED = re.compile(r"\bhl\.(\w+)(?:\.(\w+))?")
 _IMPORTED = re.compile(r"^ *from (hapticlab[\w.]*) import (\([^)]*\)|.*)", re.M)
 #: in a text, or in the name of a test

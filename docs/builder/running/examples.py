@@ -79,7 +79,7 @@ def run(text, name):
     ('3\\n', 2, 2)
     >>> run("# Title\\n\\n```python\\n1 / 0\\n```\\n", "division.md")
     Traceback (most recent call last):
-    builder.examples.ExampleError: division.md, line 4: ZeroDivisionError: division by zero
+    builder.running.examples.ExampleError: division.md, line 4: ZeroDivisionError: division by zero
     """
     page, starts = Page(text), {found.start() for found in BLOCK.finditer(text)}
     if missed := [found for found in FENCE.finditer(text) if found.start() not in starts]:

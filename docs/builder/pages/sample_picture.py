@@ -1,9 +1,9 @@
-"""The drawing of docs/explanation/life_of_a_sample.md: ``python docs/builder/sample_picture.py`` writes it."""
+"""The drawing of docs/explanation/life_of_a_sample.md: ``python docs/builder/pages/sample_picture.py`` writes it."""
 
 import math
 from pathlib import Path
 
-PICTURE = Path(__file__).parents[1] / "explanation" / "life_of_a_sample.svg"
+PICTURE = Path(__file__).parents[2] / "explanation" / "life_of_a_sample.svg"
 INK, SOFT, PAPER, BODY, WARM, COLD = "#1b1f24", "#57606a", "#ffffff", "#eef3f8", "#b3470f", "#1a66cc"
 WIDTH, HEIGHT, BOX, HIGH = 640, 530, 176, 54
 #: of the boxes, in the order of the loop: place in the grid, name, what it hands on

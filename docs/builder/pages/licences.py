@@ -38,7 +38,7 @@ class Part:
 
 
 PARTS = (
-    Part("hapticlab", tuple(path.name for path in Path(__file__).with_name("static").iterdir()), package="hapticlab"),
+    Part("hapticlab", tuple(path.name for path in (Path(__file__).parents[1] / "static").iterdir()), package="hapticlab"),
     Part("Sphinx", (
         "basic.css", "doctools.js", "documentation_options.js", "searchtools.js", "sphinx_highlight.js", "language_data.js",
         "translations.js", "*.png",
@@ -86,5 +86,5 @@ def _installed(package):
     paths = [path for path in found.files or () if any(fnmatchcase(path.name.lower(), pattern) for pattern in LICENCE)]
     inside = [path for path in paths if ".dist-info" in path.parts[0] and path.suffix != ".py"]
     if not inside and package == "hapticlab":  # from a checkout
-        return (Path(__file__).resolve().parents[2] / "LICENSE").read_text("utf-8")
+        return (Path(__file__).resolve().parents[3] / "LICENSE").read_text("utf-8")
     return "\n\n".join(Path(found.locate_file(path)).read_text("utf-8") for path in inside)

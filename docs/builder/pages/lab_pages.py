@@ -9,10 +9,10 @@ from pathlib import Path
 from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import read
 
-from .frames import frame
-from .lab_outcomes import of_notebook
+from ..running.frames import frame
+from ..running.lab_outcomes import of_notebook
 
-LABS = Path(__file__).parents[2] / "labs"
+LABS = Path(__file__).parents[3] / "labs"
 PROCESSES = 2
 #: folder of the labs that run in a browser, where a build embeds them
 IN_BROWSER = "labs_in_browser"

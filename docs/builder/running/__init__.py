@@ -1,0 +1,1 @@
+"""What runs the code of pages and labs, and what comes of it: words, figures, and live views in frames."""
