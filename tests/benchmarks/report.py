@@ -27,7 +27,7 @@ PACKAGES = (
 PEERS = ("C by hand", "numba", "PyDy", "JAX", "jax", "symjit")
 OURS = "hapticlab"
 BUSY = """The machine had other work while this was measured, so that the times are larger than those of an idle one. They are
-times of the processor, and everything compared took turns, so that ratios near 1 may change places on another run."""
+times of the processor, and everything compared took turns; still, ratios may differ by half on another run."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,8 @@ PAGES = {
         "Speed against accuracy", "Which solver needs the least time for an error, beside SciPy, heyoka and MuJoCo?",
         "work_precision.py", ("--quick",), (), accuracy_ahead, least_work_tables,
         "The errors are those at the end of each problem. A solver with variable steps may choose its steps, and hapticlab gives "
-        "a force at every sample; the rows in ticks show what that costs. The command prints every setting of every solver.",
+        "a force at every sample; the rows in ticks show what that costs. The times are those of the solver "
+        "alone; a call such as `hl.records.evaluate` takes more. The command prints every setting of every solver.",
     ),
     "firmware": Page(
         "The firmware beside the published Hapkit loop", "What do the loops of both do on one Arduino Uno?",
